@@ -1,10 +1,10 @@
-// The viewer as a page, in headless Chromium, on software WebGPU and on software WebGL2. Its pictures and figures are
-// compared with those of the same viewer in a window of this machine. Keys, pointers, links and files take the same way
-// with both APIs, so they are tested with one.
+// Tests the viewer's page in headless Chromium, on software WebGPU and on software WebGL2. Compares its pictures and
+// figures with the native viewer's. Keys, pointers, links and files use the same code with both APIs, so one API is
+// enough for their tests.
 //
-// `cargo xtask web --test` runs it. Environment: PAGE is the address of the page, NATIVE the folder with the files that
-// `tour.txt` wrote on this machine, BROWSER the browser, ASSETS a folder of hostile files that may be absent. LONG=1
-// makes the random actions take ten minutes with each API.
+// `cargo xtask web --test` runs this file. Environment variables: PAGE is the address of the page, NATIVE the folder
+// with the native viewer's files from `tour.txt`, BROWSER the browser, and ASSETS a folder of hostile files, which may
+// be absent. LONG=1 extends the random actions to ten minutes with each API.
 
 import assert from 'node:assert/strict';
 import { readFileSync, readdirSync, existsSync } from 'node:fs';
@@ -18,31 +18,31 @@ const here = (name) => fileURLToPath(new URL(name, import.meta.url));
 const FLAGS = [
   '--no-sandbox', '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update',
   '--disable-sync',
-  // WebGPU: with fewer of these the frames run, and the page stays white.
+  // WebGPU. If one of these flags is missing, frames run but the page stays white.
   '--enable-unsafe-webgpu', '--use-webgpu-adapter=swiftshader', '--enable-features=Vulkan', '--use-vulkan=swiftshader',
-  // WebGL2, which shares the first of them.
+  // WebGL2. It also needs the first WebGPU flag.
   '--use-angle=swiftshader', '--enable-unsafe-swiftshader',
-  // Without it, two devices that are lost within two minutes close both APIs to the page.
+  // Without this flag, the browser disables both APIs for the page after two lost devices within two minutes.
   '--disable-domain-blocking-for-3d-apis',
 ];
-/// The API of the tests that are the same with both.
+/// API for tests that do not depend on the API.
 const EITHER = 'webgl2';
-/// Milliseconds that a software GPU may take for anything at all.
+/// Time limit for any single wait with a software GPU, in milliseconds.
 const PATIENCE = 120_000;
-/// Milliseconds from one look at the page to the next.
+/// Time between two checks of the page, in milliseconds.
 const PERIOD = 50;
-/// The longest task of the page that nobody notices, in milliseconds.
+/// Longest task of the page that a user does not notice, in milliseconds.
 const LONGEST_TASK = 50;
-/// Where the button of the panel is on a phone of 390 points.
+/// Position of the panel's button on a phone 390 points wide.
 const DRAWER = [350, 22];
-/// What is left of the picture there beside the open drawer.
+/// Position on the picture beside the open drawer of that phone.
 const BESIDE = [10, 500];
-/// A part of the bar at the top that has no text, on all sizes of the page.
+/// Rectangle in the top bar that contains no text at any page size.
 const BAR = [150, 4, 150, 3];
-/// Console messages of the browser itself, which no page can help.
+/// Console messages of the browser itself, which a page cannot prevent.
 const OF_BROWSER = /software WebGL|GPU stall due to ReadPixels|Automatic fallback to software|powerPreference/;
 
-/// An open page with what it said.
+/// An open page and its console messages.
 class Viewer {
   static async open(browser, { api, query = '', hash = '', width = 720, height = 300, scale = 1, isTouch = false, colours = 'light' }) {
     const context = await browser.newContext({
@@ -53,7 +53,7 @@ class Viewer {
     context.setDefaultTimeout(PATIENCE);
     const page = await context.newPage();
     const viewer = new Viewer();
-    // Pictures are compared in a page of their own: that takes longer than the tasks of the viewer's page may.
+    // A separate page compares pictures, because the comparison would be a long task in the viewer's page.
     const address = `${PAGE}?api=${api}${query}${hash}`;
     Object.assign(viewer, { context, page, address, desk: await context.newPage(), said: [], files: new Map(), tasks: [] });
     await page.bringToFront();
@@ -91,13 +91,13 @@ class Viewer {
     await this.until(() => this.page.evaluate(() => document.documentElement.dataset.ready), 'the first frame');
   }
 
-  /// Leaves the page until `wake`, so that another one has the software GPU for itself.
+  /// Leaves the page until `wake`, so that another page can use the software GPU alone.
   async rest() {
     await this.keepTasks();
     await this.page.goto('about:blank');
   }
 
-  /// Keeps the long tasks of the page that is about to be left.
+  /// Records the long tasks of the page before it is left.
   async keepTasks() {
     this.tasks.push(...await this.page.evaluate(() => window.longTasks?.splice(0) ?? []));
   }
@@ -110,7 +110,7 @@ class Viewer {
     return this.page.evaluate(() => window.viewer.facts());
   }
 
-  /// Waits for something to be true, and returns it.
+  /// Waits until `what` returns a true value, and returns that value.
   async until(what, name, patience = PATIENCE) {
     const end = Date.now() + patience;
     for (;;) {
@@ -134,12 +134,12 @@ class Viewer {
     }, name, patience);
   }
 
-  /// Gives the page files as its file button does.
+  /// Opens files like the page's file button.
   async choose(...files) {
     await this.page.setInputFiles('#files', files);
   }
 
-  /// Gives the page a script, waits until it is played, and returns the facts of that moment.
+  /// Plays a script, waits for its end, and returns the facts at that time.
   async play(lines, patience = PATIENCE) {
     await this.choose({ name: 'script.txt', mimeType: 'text/plain', buffer: Buffer.from(lines.join('\n')) });
     await this.untilFacts(({ has_played: done }) => !done, 'the start of the script');
@@ -147,7 +147,7 @@ class Viewer {
     return this.untilFacts(isOver, 'the end of the script', patience);
   }
 
-  /// Number of colours of a picture, and its size.
+  /// Returns the number of colours in a picture, and its size.
   async colours(png) {
     return this.desk.evaluate(async (bytes) => {
       const picture = await createImageBitmap(await (await fetch(`data:image/png;base64,${bytes}`)).blob());
@@ -159,8 +159,8 @@ class Viewer {
     }, png.toString('base64'));
   }
 
-  /// Share of the pixels of two pictures that differ by more than `least` in any channel, and the mean difference. Both are
-  /// made smaller before: this page has one sample per pixel, and pictures without a window have four.
+  /// Returns the share of pixels that differ by more than `least` in any channel, and the mean difference. Shrinks both
+  /// pictures first, because this page has one sample per pixel, and headless pictures have four.
   async difference(one, other, least = 40) {
     return this.desk.evaluate(async ([one, other, least]) => {
       const pixels = async (bytes) => {
@@ -186,7 +186,7 @@ class Viewer {
     }, [one.toString('base64'), other.toString('base64'), least]);
   }
 
-  /// Mean value of the channels of what lies in a rectangle of the page, of 255.
+  /// Returns the mean value of all colour channels in a rectangle of the page, 0..=255.
   async brightness([x, y, width, height]) {
     const png = await this.page.screenshot({ clip: { x, y, width, height } });
     return this.desk.evaluate(async (bytes) => {
@@ -204,18 +204,18 @@ class Viewer {
   }
 }
 
-/// The last line of a table of figures, by the names of its columns.
+/// Returns the last row of a table of figures, by column name.
 function figures(csv) {
   const lines = csv.toString().trim().split('\n');
   const [names, values] = [lines[0], lines.at(-1)].map((line) => line.split(','));
   return Object.fromEntries(names.map((name, index) => [name, Number(values[index])]));
 }
 
-/// The browser of all tests, and the open page of a group of them.
+/// The browser of all tests, and the open page of a group of tests.
 let browser;
 let viewer;
 
-// Playwright kills the browser where this program exits.
+// Playwright kills the browser when this program exits.
 for (const [signal, code] of [['SIGHUP', 129], ['SIGINT', 130], ['SIGTERM', 143]]) {
   process.once(signal, () => process.exit(code));
 }
@@ -225,8 +225,8 @@ before(async () => {
 });
 after(async () => browser?.close());
 
-/// Opens a page for a group of tests. Closes what a test has left open, so that the next one has the software GPU for
-/// itself.
+/// Opens a page for a group of tests. Closes pages that a test has left open, so that the next test can use the
+/// software GPU alone.
 function withViewer(api) {
   before(async () => {
     viewer = await Viewer.open(browser, { api });
@@ -239,19 +239,19 @@ function withViewer(api) {
 }
 
 function testTasks() {
-  test('no task of the page takes longer than anybody notices', async (context) => {
+  test('no task of the page is long enough to notice', async (context) => {
     await viewer.keepTasks();
     const long = viewer.tasks.filter(({ duration }) => duration > LONGEST_TASK);
     context.diagnostic(`tasks of more than ${LONGEST_TASK} ms: ${JSON.stringify(long)}`);
-    // A busy machine takes the page's core away now and then, up to four times in a minute. A viewer that blocked the page
-    // would do so in each frame, hundreds of times.
+    // A busy machine interrupts the page up to four times a minute. A viewer that blocks the page would block it in
+    // each frame, hundreds of times.
     assert.ok(long.length <= 6, JSON.stringify(long));
   });
 }
 
 for (const api of ['webgpu', 'webgl2']) {
   const judges = api === 'webgpu';
-  // Software WebGPU takes minutes for them, and most of what they do is the same with both APIs.
+  // These tests take minutes on software WebGPU, and most of their work is the same with both APIs.
   const byNight = !LONG && api !== EITHER && 'cargo xtask web --test --long';
 
   describe(api, { concurrency: 1, timeout: 30 * 60_000 }, () => {
@@ -265,21 +265,21 @@ for (const api of ['webgpu', 'webgl2']) {
       viewer.quiet();
     });
 
-    test('pictures and figures are those of a window, artefact by artefact', async () => {
+    test('pictures and figures match the native viewer for each artefact', async () => {
       const lines = readFileSync(here('tour.txt'), 'utf8').split('\n');
-      // Figures are saved only where pictures are judged.
+      // Figures exist only with the API that judges pictures.
       const played = judges ? lines : lines.filter((line) => !/^(await judged|wait|figures)/.test(line));
       await viewer.play(played, 8 * 60_000);
       await viewer.until(() => viewer.files.has('hole.png'), 'the last picture');
       for (const name of ['first', 'acne', 'aliasing', 'hole']) {
         const native = readFileSync(`${NATIVE}/${name}.png`);
         const { share, mean } = await viewer.difference(viewer.files.get(`${name}.png`), native);
-        assert.ok(share < 0.02 && mean < 6, `${name}: ${share * 100}% of the pixels differ, ${mean} in the mean`);
+        assert.ok(share < 0.02 && mean < 6, `${name}: ${share * 100}% of the pixels differ, mean difference ${mean}`);
       }
       if (judges) {
         for (const name of readdirSync(NATIVE).filter((file) => file.endsWith('.csv'))) {
           const [here, there] = [viewer.files.get(name), readFileSync(`${NATIVE}/${name}`)].map(figures);
-          for (const column of ['wrong (%)', 'false shadow (%)', 'false light (%)', 'hole (%)', 'mean error (%)']) {
+          for (const column of ['wrong (%)', 'false shadow (%)', 'false light (%)', 'hole (%)', 'light error (%)']) {
             const off = Math.abs(here[column] - there[column]);
             assert.ok(off <= 0.3 + 0.03 * there[column], `${name}, ${column}: ${here[column]}, not ${there[column]}`);
           }
@@ -288,7 +288,7 @@ for (const api of ['webgpu', 'webgl2']) {
       viewer.quiet();
     });
 
-    test('views that need compute shaders are refused with the reason, or judged', async () => {
+    test('views that need compute shaders are drawn, or refused with the reason', async () => {
       await viewer.page.keyboard.press('3');
       if (judges) {
         await viewer.untilFacts(({ view }) => view === 'Error', 'the view of errors');
@@ -303,7 +303,7 @@ for (const api of ['webgpu', 'webgl2']) {
     test('every view, sample and kind of edge is drawn', async () => {
       const views = ['truth', 'error', 'pixels_per_texel', 'maps', 'texel_grid', 'demand', 'updates', 'outside'];
       const samples = ['xna-shadow-mapping', 'headlight-real-shadow', 'terrain-vehicles', 'parallel-split'];
-      // Fewer pixels and texels take less time, and need the same pipelines.
+      // A smaller picture and smaller maps save time and need the same pipelines.
       await viewer.page.setViewportSize({ width: 320, height: 180 });
       const lines = ['await loaded', 'play', 'set map.resolution 512', ...views.flatMap((view) => [`view ${view}`, 'frames 1']),
         'view final', 'marks', 'frames 1', 'marks', 'marks', 'set map.edges traced', 'view traced', 'frames 1', 'view final', 'frames 1',
@@ -313,32 +313,32 @@ for (const api of ['webgpu', 'webgl2']) {
       viewer.quiet();
     });
 
-    test('auto-tune goes on beside frames, and is cancelled', { skip: byNight }, async () => {
+    test('auto-tune runs while frames are drawn, and can be cancelled', { skip: byNight }, async () => {
       await viewer.page.keyboard.press('t');
-      await viewer.untilFacts(({ is_waiting: busy }) => busy, 'the search');
-      await viewer.untilFacts(({ tried }) => tried > 0, 'its first figures');
+      await viewer.untilFacts(({ is_waiting: busy }) => busy, 'the start of the search');
+      await viewer.untilFacts(({ tried }) => tried > 0, 'the first figures of the search');
       const cancel = { name: 'cancel.txt', mimeType: 'text/plain', buffer: Buffer.from('cancel') };
       await viewer.choose(cancel);
-      await viewer.untilFacts(({ is_waiting: busy }) => !busy, 'its end');
+      await viewer.untilFacts(({ is_waiting: busy }) => !busy, 'the end of the search');
       viewer.quiet();
     });
 
-    test('random actions leave the page alive and its memory flat', { skip: byNight }, async () => {
+    test('random actions neither end the page nor grow its memory', { skip: byNight }, async () => {
       await viewer.page.setViewportSize({ width: 320, height: 180 });
       const seconds = LONG ? 360 : 10;
       const patience = (seconds + 300) * 1000;
-      // A search for a better technique takes more memory than all else, and modules give none back. Scenes, pictures and
-      // maps of all kinds are there after some actions.
+      // Auto-tune needs more memory than any other action, and a WebAssembly module never releases memory. After some
+      // random actions, all kinds of scenes, pictures and maps exist.
       const first = ['tune', 'wait 4', 'open courtyard', 'await loaded', `monkey ${LONG ? 240 : 5} 7`];
       const { memory } = await viewer.play(first, patience);
       const end = await viewer.play([`monkey ${seconds} 8`], patience);
-      assert.ok(end.memory <= memory * (LONG ? 1.25 : 1.6), `${memory} bytes became ${end.memory}`);
+      assert.ok(end.memory <= memory * (LONG ? 1.25 : 1.6), `memory grew from ${memory} to ${end.memory} bytes`);
       viewer.quiet();
     });
 
     testTasks();
 
-    test('a lost device is told, and the page opens again', async () => {
+    test('a lost device is reported, and the page can reload', async () => {
       const { page } = viewer;
       const { processInfo: processes } = await (await browser.newBrowserCDPSession()).send('SystemInfo.getProcessInfo');
       process.kill(processes.find(({ type }) => type === 'GPU').id, 'SIGKILL');
@@ -348,7 +348,7 @@ for (const api of ['webgpu', 'webgl2']) {
       await page.click('#again');
       await page.waitForSelector('#cover.failed', { state: 'detached' });
       await viewer.untilReady();
-      // Whatever the random actions left on show.
+      // The threshold is low, because the random actions may have left any view.
       const { count } = await viewer.colours(await page.screenshot());
       assert.ok(count > 100, `${count} colours`);
     });
@@ -385,13 +385,13 @@ describe('the page', { concurrency: 1, timeout: 30 * 60_000 }, () => {
     // The mouse of the previous test may still move the camera in the next frame.
     await viewer.play(['frames 3']);
     await viewer.page.evaluate(() => window.viewer.tell('save'));
-    // Messages are answered in order: with this answer the page has kept the settings.
+    // The viewer answers messages in order. After this answer the page has stored the settings.
     const start = await viewer.facts();
     assert.ok(await viewer.page.evaluate(() => localStorage.getItem('shadowfit viewer')));
     await viewer.keepTasks();
     await viewer.page.reload();
     const again = await viewer.untilFacts(({ is_ready: ready }) => ready, 'the first frame');
-    // The file has angles in degrees.
+    // The tolerance is necessary because the file stores angles in degrees.
     const near = (one, other) => one.every((value, index) => Math.abs(value - other[index]) < 1e-5);
     assert.ok(near(again.position, start.position) && near(again.angles, start.angles),
       `${start.position}, ${start.angles} became ${again.position}, ${again.angles}`);
@@ -399,7 +399,7 @@ describe('the page', { concurrency: 1, timeout: 30 * 60_000 }, () => {
     viewer.quiet();
   });
 
-  test('hostile files show an error, and the page lives on', async () => {
+  test('hostile files show an error, and the page keeps running', async () => {
     const hostile = [
       { name: 'short.glb', buffer: Buffer.from('glTF\x02\0\0\0\xff\xff\xff\x7f', 'latin1') },
       { name: 'empty.glb', buffer: Buffer.alloc(0) },
@@ -415,13 +415,13 @@ describe('the page', { concurrency: 1, timeout: 30 * 60_000 }, () => {
     }
     for (const file of hostile) {
       await viewer.choose({ mimeType: 'application/octet-stream', ...file });
-      // A few of the shared ones are sound, and open.
+      // A few of the shared files are valid, so they open.
       await viewer.untilFacts(({ message, title, is_waiting: busy }) =>
         !busy && (message?.includes(file.name) || title.includes(file.name)), `an answer to ${file.name}`);
     }
     const before = await viewer.facts();
     await viewer.page.keyboard.down('s');
-    await viewer.untilFacts(({ position }) => `${position}` !== `${before.position}`, 'a movement after all of them');
+    await viewer.untilFacts(({ position }) => `${position}` !== `${before.position}`, 'a movement after all files');
     await viewer.page.keyboard.up('s');
     viewer.quiet();
   });
@@ -432,8 +432,8 @@ describe('the page', { concurrency: 1, timeout: 30 * 60_000 }, () => {
     viewer.quiet();
   });
 
-  test('a link restores all of its state', async () => {
-    // Random actions may have copied another link before.
+  test('a link restores the complete state', async () => {
+    // The clipboard may contain another link from random actions.
     await viewer.page.evaluate(() => navigator.clipboard.writeText(''));
     const there = await viewer.play(['open plain', 'await loaded', 'play', 'technique stable-4', 'set bias.constant 2.5', 'set map.resolution 1024',
       'set light.azimuth 200', 'look 3 4 12 TO 0 1 0', 'view maps', 'compare on', 'frames 2', 'copy-link']);
@@ -450,10 +450,10 @@ describe('the page', { concurrency: 1, timeout: 30 * 60_000 }, () => {
     other.quiet();
   });
 
-  test('the page fits fine screens, and is dark where the browser prefers that', async () => {
+  test('the page fits high-resolution screens, and follows a dark theme', async () => {
     const options = { api: EITHER, query: '&afresh', width: 400, height: 240, scale: 2, colours: 'dark' };
     const fine = await Viewer.open(browser, options);
-    await fine.untilFacts(({ size }) => `${size}` === '800,480', 'two pixels a point');
+    await fine.untilFacts(({ size }) => `${size}` === '800,480', 'two pixels per point');
     assert.ok(await fine.brightness(BAR) < 80, 'a dark page');
     fine.quiet();
   });
@@ -465,18 +465,20 @@ describe('the page', { concurrency: 1, timeout: 30 * 60_000 }, () => {
     await phone.untilFacts(({ drawer }) => drawer, 'the drawer');
     const { share } = await phone.difference(shut, await phone.page.screenshot());
     assert.ok(share > 0.3, `the drawer covers ${share} of the picture`);
-    assert.ok(await phone.brightness(BAR) > 160, 'a light page where the browser prefers one');
+    assert.ok(await phone.brightness(BAR) > 160, 'a light page with a light theme');
     await phone.page.touchscreen.tap(...BESIDE);
     await phone.untilFacts(({ drawer }) => !drawer, 'the picture');
-    // Fewer pixels take less time.
+    // A smaller picture saves time.
     await phone.page.setViewportSize({ width: 400, height: 300 });
     await phone.untilFacts(({ size }) => `${size}` === '200,150', 'the new size');
     const screen = await phone.context.newCDPSession(phone.page);
     const touch = (type, points) =>
       screen.send('Input.dispatchTouchEvent', { type, touchPoints: points.map(([x, y], id) => ({ x, y, id })) });
-    /// Puts fingers down and moves them at once, as hands do: those that rest ask for a menu. They stay until they are seen.
+    /// Puts fingers down, moves them at once, and lifts them after the viewer has reacted. Resting fingers would open a
+    /// menu.
     const gesture = async (fingers, fact, before) => {
-      // A busy browser may take the first ones for fingers that rest, and tell no more of them: hands try again.
+      // A busy browser may treat the first touches as resting fingers and report no movement, so the gesture is
+      // repeated.
       for (let tries = 5; ; tries -= 1) {
         let by = 0;
         const move = () => touch('touchMove', fingers(by += 8));
@@ -499,15 +501,15 @@ describe('the page', { concurrency: 1, timeout: 30 * 60_000 }, () => {
     const [yaw, pitch] = there.angles;
     const forward = [-Math.sin(yaw) * Math.cos(pitch), Math.sin(pitch), -Math.cos(yaw) * Math.cos(pitch)];
     const along = way.reduce((sum, side, axis) => sum + side * forward[axis], 0) / Math.hypot(...way);
-    assert.ok(along > 0.9, `forward: ${way} where ${forward} is`);
+    assert.ok(along > 0.9, `forward: moved by ${way}, not along ${forward}`);
     phone.quiet();
   });
 
   testTasks();
 
-  test('a page without memory says so', async () => {
+  test('a page without memory reports it', async () => {
     const { page } = await Viewer.open(browser, { api: EITHER, query: '&afresh' });
-    // More than a module of 32 bits can have.
+    // Larger than the memory of a 32-bit module.
     await page.evaluate(() => window.viewer.tell('file', 'huge.glb', { length: 4e9 }));
     await page.waitForSelector('#cover.failed');
     assert.match(await page.textContent('#state'), /No memory is left/);

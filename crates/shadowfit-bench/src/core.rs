@@ -1,7 +1,7 @@
 //! `shadowfit-bench core`: runs the benches of the core crate, and prints their times as a table.
 //!
-//! Times mean little on another machine. Ratios of one run do, so every group that has a hand-written counterpart shows
-//! them.
+//! Times from different machines are not comparable. Ratios of one run are, so every group with a
+//! hand-written counterpart shows them.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -15,12 +15,12 @@ use shadowfit_study::print;
 
 use crate::page::{self, Section};
 
-/// How the counterpart of a group is called, at the beginning of its name.
+/// Prefix of a counterpart's name in its group.
 const COUNTERPART: &str = "by hand";
 
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// Replace the table in docs/BENCHMARKS.md
+    /// Write the table to docs/figures/core.md
     #[arg(long)]
     page: bool,
     /// Arguments of the benches, for example part of a name or `--quick`
@@ -28,7 +28,7 @@ pub(crate) struct Args {
     benches: Vec<String>,
 }
 
-/// What criterion writes of a benchmark.
+/// Criterion's description of a benchmark.
 #[derive(Deserialize)]
 struct Benchmark {
     group_id: String,
@@ -89,10 +89,10 @@ fn collect(folder: &Path, groups: &mut BTreeMap<String, Vec<Measured>>) -> Resul
 
 fn read<T: for<'a> Deserialize<'a>>(path: &Path) -> Result<T> {
     let text = fs::read_to_string(path).with_context(|| format!("{}: cannot be read", path.display()))?;
-    serde_json::from_str(&text).with_context(|| format!("{}: is not what criterion writes", path.display()))
+    serde_json::from_str(&text).with_context(|| format!("{}: is not a file of criterion", path.display()))
 }
 
-/// All groups as a table, each case with its share of the counterpart's time.
+/// Returns all groups as a table, each case with its ratio to the counterpart's time.
 fn table(groups: &BTreeMap<String, Vec<Measured>>) -> String {
     let mut out = String::from("| what | how | time | of the counterpart's |\n|---|---|---:|---:|\n");
     for (group, cases) in groups {
@@ -111,7 +111,7 @@ fn table(groups: &BTreeMap<String, Vec<Measured>>) -> String {
     out
 }
 
-/// A time with three digits.
+/// Returns a time with three digits.
 fn readable(nanoseconds: f64) -> String {
     let (value, unit) = match nanoseconds {
         t if t < 1e3 => (t, "ns"),

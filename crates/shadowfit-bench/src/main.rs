@@ -1,4 +1,4 @@
-//! What sun shadows cost.
+//! Measures the cost of sun shadows.
 //!
 //! ```sh
 //! # The core crate, by its benches.
@@ -11,7 +11,7 @@
 //! cargo run --release -p shadowfit-bench -- scenes big.glb bigger.glb
 //! ```
 //!
-//! With `--page`, the first three replace their tables in `docs/BENCHMARKS.md`, as `cargo xtask bench` does.
+//! With `--page`, the first three write their tables to `docs/figures`, as `cargo xtask bench` does.
 
 mod core;
 mod cuboid;
@@ -29,11 +29,11 @@ use clap::{Parser, Subcommand};
 use shadowfit_adapter::AdapterOptions;
 use shadowfit_render::Gpu;
 
-/// Exit code after bad input, as of clap's own complaints.
+/// Exit code after bad input, like clap's own errors.
 const BAD_INPUT: u8 = 2;
 
 #[derive(Parser)]
-#[command(about = "Measures what sun shadows cost")]
+#[command(about = "Measures the cost of sun shadows")]
 struct Cli {
     #[command(subcommand)]
     command: Command,
@@ -70,4 +70,25 @@ fn main() -> ExitCode {
 /// Opens the graphics adapter of the command line.
 fn open(adapter: &AdapterOptions) -> Result<Gpu> {
     Ok(pollster::block_on(Gpu::headless(&adapter.choice()))?)
+}
+
+#[cfg(test)]
+mod tests {
+    use shadowfit_testing::commands::doc_commands;
+
+    use super::*;
+
+    #[test]
+    fn every_command_of_the_docs_has_options_that_exist() {
+        let mut count = 0;
+        for command in doc_commands(&page::root()) {
+            let Some(words) = command.program_arguments("shadowfit-bench") else { continue };
+            // The help ends parsing after all other arguments, whether required ones are there or not.
+            let words = ["shadowfit-bench".to_owned()].into_iter().chain(words).chain(["--help".to_owned()]);
+            let error = Cli::try_parse_from(words).err().expect("help");
+            assert_eq!(error.kind(), clap::error::ErrorKind::DisplayHelp, "{}: {error}", command.page);
+            count += 1;
+        }
+        assert!(count >= 3, "{count}");
+    }
 }

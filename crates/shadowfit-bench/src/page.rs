@@ -1,17 +1,16 @@
-//! Replaces the tables of `docs/BENCHMARKS.md`, each between two marks.
+//! Writes the tables into files of `docs/figures`.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result};
+use anyhow::Result;
 use shadowfit_study::write_whole;
 
-/// The page, relative to the workspace.
-const PAGE: &str = "docs/BENCHMARKS.md";
-/// Folder of the page's curves, relative to the workspace.
+/// Folder of the files, relative to the workspace.
+const FOLDER: &str = "docs/figures";
+/// Folder of the curves, relative to the workspace.
 const CURVES: &str = "docs/images/benchmarks";
 
-/// A place for tables in the page.
+/// A file of tables.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Section {
     Core,
@@ -20,62 +19,61 @@ pub(crate) enum Section {
 }
 
 impl Section {
-    /// The marks before and after the tables.
-    fn marks(self) -> [&'static str; 2] {
+    /// Returns the file's name.
+    fn file(self) -> &'static str {
         match self {
-            Self::Core => ["<!-- measured: begin -->", "<!-- measured: end -->"],
-            Self::Gpu => ["<!-- measured on a GPU: begin -->", "<!-- measured on a GPU: end -->"],
-            Self::Growth => ["<!-- measured growth: begin -->", "<!-- measured growth: end -->"],
+            Self::Core => "core.md",
+            Self::Gpu => "gpu.md",
+            Self::Growth => "growth.md",
         }
     }
 
-    /// Replaces the tables of the page.
+    /// Returns the file's title and the command that writes it.
+    fn head(self) -> [&'static str; 2] {
+        match self {
+            Self::Core => ["Times of the core crate", "cargo xtask bench"],
+            Self::Gpu => ["Times on a GPU", "cargo xtask bench --gpu"],
+            Self::Growth => ["Growth with the size of the world", "cargo xtask bench --growth"],
+        }
+    }
+
+    /// Writes the file.
     ///
     /// # Errors
     ///
-    /// When the page cannot be read or written, or lacks the marks.
+    /// If it cannot be written.
     pub(crate) fn publish(self, tables: &str) -> Result<()> {
-        let page = root().join(PAGE);
-        let text = fs::read_to_string(&page).with_context(|| format!("{}: cannot be read", page.display()))?;
-        let replaced = self.replaced(&text, tables).with_context(|| page.display().to_string())?;
-        write_whole(&page, replaced.as_bytes())
+        write_whole(&root().join(FOLDER).join(self.file()), self.page(tables).as_bytes())
     }
 
-    fn replaced(self, page: &str, tables: &str) -> Result<String> {
-        let [begin, end] = self.marks();
-        let (before, rest) = page.split_once(begin).with_context(|| format!("it has no {begin}"))?;
-        let (_, after) = rest.split_once(end).with_context(|| format!("it has no {end}"))?;
-        Ok(format!("{before}{begin}\n{}\n{end}{after}", tables.trim_end()))
+    fn page(self, tables: &str) -> String {
+        let [title, command] = self.head();
+        format!("# {title}\n\nWritten by `{command}`.\n\n{}\n", tables.trim_end())
     }
 }
 
-/// The folder of the page's curves.
+/// Returns the folder of the curves.
 pub(crate) fn curves() -> PathBuf {
     root().join(CURVES)
 }
 
-/// The folder of the workspace.
+/// Returns the folder of the workspace.
 pub(crate) fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
 #[cfg(test)]
 mod tests {
+    use std::fs;
+
     use super::*;
 
     #[test]
-    fn tables_are_replaced_between_their_marks_alone() {
-        let page = "a\n<!-- measured growth: begin -->\nold\n<!-- measured growth: end -->\nb\n";
-        let replaced = Section::Growth.replaced(page, "| new |\n\n").expect("a page with marks");
-        assert_eq!(replaced, page.replace("old", "| new |"));
-        assert!(Section::Gpu.replaced(page, "").is_err());
-    }
-
-    #[test]
-    fn the_page_has_the_marks_of_all_sections() {
-        let page = fs::read_to_string(root().join(PAGE)).expect("the page");
+    fn the_files_in_the_docs_begin_as_they_are_written() {
         for section in [Section::Core, Section::Gpu, Section::Growth] {
-            assert!(section.replaced(&page, "").is_ok(), "{section:?}");
+            let file = root().join(FOLDER).join(section.file());
+            let text = fs::read_to_string(&file).expect("a file of the docs");
+            assert!(text.starts_with(section.page("").trim_end()), "{}", file.display());
         }
     }
 }

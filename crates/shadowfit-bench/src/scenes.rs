@@ -1,5 +1,5 @@
-//! `shadowfit-bench scenes`: measures the cost of scenes as they grow. A row of the table has loading, preparing, rays,
-//! the first frame, a frame at rest, a frame under way, and the most memory until then.
+//! `shadowfit-bench scenes`: measures the cost of scenes as they grow. A row of the table has the times of
+//! loading, preparation, rays, the first frame, a frame at rest and a frame in motion, and the peak memory.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -19,7 +19,7 @@ use crate::times::{median, timed};
 const SIZE: [u32; 2] = [1280, 720];
 /// Samples per pixel.
 const SAMPLES: u32 = 4;
-/// Frames at rest and under way, of which the median is told.
+/// Frames at rest and in motion. The median is printed.
 const FRAMES: usize = 9;
 
 #[derive(clap::Args)]
@@ -38,7 +38,8 @@ const HEADING: &str = "\
 
 /// Prints the table, row by row.
 pub(crate) fn run(args: &Args) -> Result<()> {
-    // A machine without the adapter is refused before the table begins. Each scene opens a device of its own.
+    // Fails before the table begins if the machine does not have the adapter. Each scene opens its own
+    // device.
     open(&args.adapter)?;
     print(HEADING)?;
     for file in &args.scenes {
@@ -49,7 +50,7 @@ pub(crate) fn run(args: &Args) -> Result<()> {
 
 /// Measures a scene. Returns its row.
 fn measure(file: &Path, adapter: &AdapterOptions) -> Result<String> {
-    // From here on, the most memory is counted anew.
+    // Resets the peak memory.
     let _ = fs::write("/proc/self/clear_refs", "5");
     let gpu = open(adapter)?;
     let mut stage = Stage::new(gpu.clone(), default_scene(), SAMPLES)?;
@@ -88,7 +89,7 @@ fn frame(stage: &mut Stage, target: &RenderTarget) -> f64 {
     time
 }
 
-/// The most memory of this process so far, in MiB, where the system tells it.
+/// Returns the peak memory of this process in MiB, or 0 if the system does not report it.
 fn peak() -> u64 {
     let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));

@@ -1,10 +1,10 @@
-//! Tables of what was timed.
+//! Tables of measurements.
 
 use core::fmt;
 
 use shadowfit_report::markdown_table;
 
-/// A table with a heading and a line that says what it shows.
+/// A table with a heading and a sentence that explains it.
 #[derive(Debug)]
 pub(crate) struct Table {
     pub(crate) title: &'static str,
@@ -20,13 +20,13 @@ impl fmt::Display for Table {
     }
 }
 
-/// A time with three digits, in milliseconds.
+/// Returns a time with three digits, in milliseconds.
 pub(crate) fn ms(time: f64) -> String {
     let decimals = if time < 1.0 { 3 } else { 2 };
     format!("{time:.decimals$} ms")
 }
 
-/// A share of another time.
+/// Returns a time as a share of another.
 pub(crate) fn share(time: f64, of: f64) -> String {
     format!("{:.2}", time / of)
 }

@@ -1,10 +1,11 @@
-//! Times: of a call, of the frames of a walk, and the median of some.
+//! Measurement of a call, times of the frames of a walk, and medians.
 
 use std::time::Instant;
 
 use anyhow::Result;
 
-/// Frames before those that count: the first one, and the one in which what is visible first becomes known.
+/// Frames before the counted ones: the first one, and the one in which the visible demand first becomes
+/// known.
 pub(crate) const LEAD: usize = 2;
 
 /// Each frame's shortest time of all rounds, in milliseconds.
@@ -22,17 +23,17 @@ impl Times {
         }
     }
 
-    /// The first frame.
+    /// Returns the time of the first frame.
     pub(crate) fn first(&self) -> f64 {
         self.0.first().copied().unwrap_or(0.0)
     }
 
-    /// The middle one of the frames that count.
+    /// Returns the median of the frames that count.
     pub(crate) fn median(&self) -> f64 {
         median(self.counting().to_vec())
     }
 
-    /// The slowest of the frames that count.
+    /// Returns the time of the slowest frame that counts.
     pub(crate) fn worst(&self) -> f64 {
         self.counting().iter().copied().fold(0.0, f64::max)
     }
@@ -48,14 +49,14 @@ pub(crate) fn median(mut times: Vec<f64>) -> f64 {
     times.get(times.len() / 2).copied().unwrap_or(0.0)
 }
 
-/// What something gives, and the milliseconds that it took.
+/// Returns the result of a call, and its time in milliseconds.
 pub(crate) fn timed<T>(work: impl FnOnce() -> T) -> (T, f64) {
     let begin = Instant::now();
     let result = work();
     (result, begin.elapsed().as_secs_f64() * 1e3)
 }
 
-/// The shortest of some rounds, in milliseconds.
+/// Returns the shortest time of some rounds, in milliseconds.
 pub(crate) fn shortest(rounds: usize, mut work: impl FnMut() -> Result<()>) -> Result<f64> {
     let mut least = f64::INFINITY;
     for _ in 0..rounds {

@@ -4,7 +4,7 @@ use std::process::Command;
 
 use shadowfit_testing::{adapter_name, package_program, refuses_missing_adapter};
 
-/// The program with the arguments of a quick run.
+/// Returns the program with the arguments of a quick run.
 fn quick() -> Command {
     let mut growth = Command::new(package_program(env!("CARGO_BIN_EXE_shadowfit-bench")));
     growth.args(["growth", "--quick"]);
@@ -26,7 +26,7 @@ fn a_quick_run_of_growth_has_every_row_and_draws_every_curve() {
     assert_eq!(rows, ROWS, "{text}");
     assert!(!text.contains("NaN") && !text.contains("inf"), "{text}");
     let pictures: Vec<&str> =
-        text.split("(images/benchmarks/").skip(1).filter_map(|rest| rest.split(')').next()).collect();
+        text.split("(../images/benchmarks/").skip(1).filter_map(|rest| rest.split(')').next()).collect();
     assert_eq!(pictures, ["fits.svg", "culling.svg", "frames.svg", "maps.svg"]);
     for picture in pictures {
         let svg = std::fs::read_to_string(folder.join(picture)).unwrap_or_else(|error| panic!("{picture}: {error}"));
@@ -40,5 +40,6 @@ fn an_adapter_that_the_machine_lacks_is_refused_with_a_list_of_adapters() {
     refuses_missing_adapter(quick);
 }
 
-/// Towns of 100 and 1,000 boxes: four fits, culling, five kinds of frames; eight numbers of maps and six sides.
+/// Towns of 100 and 1,000 boxes: four fits, culling, five kinds of frames. Then eight numbers of maps and six
+/// sides.
 const ROWS: usize = 2 * (4 + 1 + 5) + 8 + 6;

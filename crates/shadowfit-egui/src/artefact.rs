@@ -1,6 +1,6 @@
-//! The three artefacts of shadow maps: what they are called, why they happen and what cures them.
+//! The three artefacts of shadow maps: their names, causes and cures.
 
-/// What can be wrong with a shadow-mapped picture.
+/// An artefact of a shadow-mapped picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Artefact {
     /// False shadow on surfaces that shadow themselves.
@@ -15,7 +15,7 @@ impl Artefact {
     /// All artefacts, in the order of their keys.
     pub const ALL: [Self; 3] = [Self::Acne, Self::Aliasing, Self::ClippingHole];
 
-    /// Readable name.
+    /// Returns the name for people.
     pub const fn label(self) -> &'static str {
         match self {
             Self::Acne => "Acne",
@@ -24,7 +24,7 @@ impl Artefact {
         }
     }
 
-    /// Name for a narrow button.
+    /// Returns the name for a narrow button.
     pub(crate) const fn short_label(self) -> &'static str {
         match self {
             Self::Acne => "acne",
@@ -33,48 +33,48 @@ impl Artefact {
         }
     }
 
-    /// What is seen and why it happens, in a paragraph.
+    /// Returns the appearance and the cause, in a paragraph.
     pub const fn explanation(self) -> &'static str {
         match self {
             Self::Acne => {
-                "Lit surfaces are covered with dark stripes or dots. The map stores one depth per texel, but a \
-                 texel covers a patch of a sloped surface: half of the patch lies behind its stored depth and \
-                 so takes the surface itself for a caster. Rounding of the stored depths does the same on \
-                 surfaces that face the light."
+                "Lit surfaces are covered with dark stripes or dots. The map stores one depth per texel, but a texel \
+                 covers a patch of a sloped surface. Half of the patch lies behind the stored depth, and is shadowed \
+                 by the surface itself. On surfaces that face the light, rounding of the stored depths has the same \
+                 effect."
             }
             Self::Aliasing => {
-                "Shadow edges near the camera are staircases. A map is spread evenly over all that it covers, while \
-                 the camera magnifies what is near, so one texel there covers many pixels. The figure 'pixels per \
-                 texel' says how many."
+                "Shadow edges near the camera are staircases. A map spreads its texels evenly over the area that it \
+                 covers, but the camera magnifies near surfaces, so that one texel there covers many pixels. The \
+                 figure 'Pixels per texel' shows how many."
             }
             Self::ClippingHole => {
-                "A shadow that should be there is missing or cut off. A map's box is fitted to what the camera \
-                 sees; a caster between the light and that box is outside it, is never drawn into the map, and \
-                 so throws no shadow into the view."
+                "A shadow is missing or cut off. A map's box is fitted to the camera's view. A caster between the \
+                 light and that box is not drawn into the map, and so casts no shadow into the view."
             }
         }
     }
 
-    /// What the cure does, in a paragraph.
+    /// Returns the effect of the cure, in a paragraph.
     pub const fn cure(self) -> &'static str {
         match self {
             Self::Acne => {
-                "Each texel is compared with the depth that the lit surface's own plane has there, moved toward \
-                 the light by the plane's rise over the reach of one comparison: the least that clears a plane at \
-                 any slope. A constant bias of one texel clears the creases of curved things; more would detach \
-                 shadows from their casters."
+                "Each texel is compared with the depth of the receiver's own plane at that texel, moved toward the \
+                 light by the plane's height change over the reach of one comparison. This is the smallest bias that \
+                 removes acne from planes at any slope. A constant bias of one texel removes it from the creases of \
+                 curved surfaces. More would detach shadows from their casters."
             }
             Self::Aliasing => {
-                "Each map is laid closely around what is seen, without a margin, so that its texels are spent there; \
-                 a single map also ends its shadows where little is seen. Windows, which cannot be made coarse and \
-                 gave way to focused maps, are back. Maps that were small are larger, and the filter blends \
+                "Each map is fitted closely to the visible area, without a margin. With a single map, shadows also end \
+                 at the distance beyond which little is visible. If the technique had windows, which the demonstration \
+                 replaced by coarser focused maps, they return. Small maps become larger, and the filter blends \
                  neighbouring texels."
             }
             Self::ClippingHole => {
-                "The near plane of each map is moved toward the light to the first caster that can throw a shadow \
-                 into view, so that casters outside the view are drawn into the map. A single map is also fitted to \
-                 what is seen of the scene. Cascades keep the size of their texels, and only the depth \
-                 range grows. Windows hold every caster over them, so they gave way to focused maps, and are back."
+                "The near plane of each map is moved toward the light to the first caster of a visible shadow, so that \
+                 casters outside the view are drawn into the map. A single map is also fitted to the visible part of \
+                 the scene. Cascades keep their texel size; only their depth range grows. If the technique had \
+                 windows, which the demonstration replaced by focused maps, they return: windows hold every caster \
+                 between their area and the light."
             }
         }
     }

@@ -6,7 +6,7 @@ use crate::theme::{Palette, has_arrows};
 use crate::widgets::{Icon, KeyButton, at_least, caption, card, icon_button, main_button};
 use crate::{Artefact, Command, ShownArtefact, keys_of};
 
-/// The buttons, and the card of the artefact that is shown.
+/// Shows the buttons, and the card of the shown artefact.
 pub(crate) fn show(ui: &mut Ui, shown: Option<&ShownArtefact<'_>>, command: &mut Option<Command>) {
     ui.columns_const(|columns: &mut [Ui; 3]| {
         for (ui, artefact) in columns.iter_mut().zip(Artefact::ALL) {
@@ -27,13 +27,13 @@ pub(crate) fn show(ui: &mut Ui, shown: Option<&ShownArtefact<'_>>, command: &mut
     }
 }
 
-/// What to look for in the picture of the artefact that is shown, what its cure changed, and the button that fixes it, in
-/// the whole width of `ui`: for over the picture, where the panel, which has more of it, is closed.
+/// Shows a brief card of the artefact in the whole width of `ui`: the narration, the changes of the cure, and
+/// the button that fixes it. For use over the picture while the panel is closed.
 pub fn artefact_card(ui: &mut Ui, shown: &ShownArtefact<'_>) -> Option<Command> {
     card_of(ui, shown, true)
 }
 
-/// The card; a brief one does not explain the artefact where it is narrated.
+/// Shows the card. A brief card leaves out the explanation if there is a narration.
 fn card_of(ui: &mut Ui, shown: &ShownArtefact<'_>, is_brief: bool) -> Option<Command> {
     let ShownArtefact { artefact, fixed, narration, changes: changed } = *shown;
     let palette = Palette::of(ui);
@@ -70,7 +70,7 @@ fn card_of(ui: &mut Ui, shown: &ShownArtefact<'_>, is_brief: bool) -> Option<Com
     command
 }
 
-/// The title of the card, and the button that closes it. Returns whether the button was clicked.
+/// Shows the title of the card and its close button. Returns whether the button was clicked.
 fn head(ui: &mut Ui, shown: &ShownArtefact<'_>, accent: Color32) -> bool {
     let label = shown.artefact.label();
     let title = if shown.fixed { format!("{label}: fixed") } else { label.to_owned() };
@@ -82,7 +82,7 @@ fn head(ui: &mut Ui, shown: &ShownArtefact<'_>, accent: Color32) -> bool {
     .inner
 }
 
-/// What was changed, a line each.
+/// Shows the changes, a line each.
 pub(crate) fn changes(ui: &mut Ui, changes: &[String]) {
     let has_arrows = has_arrows(ui);
     for change in changes {

@@ -1,4 +1,4 @@
-//! The card of a scene: what it teaches, what it can show, and its own options.
+//! The card of a scene: its lesson, its variants, and its own options.
 
 use egui::{Checkbox, ComboBox, Label, RichText, Slider, Ui};
 
@@ -10,7 +10,7 @@ use crate::{Card, CardControl, CardRow, Command};
 /// Width of the names of options, in points.
 const LABEL_WIDTH: f32 = 96.0;
 
-/// The card.
+/// Shows the card.
 pub(crate) fn show(ui: &mut Ui, scene: &Card<'_>, command: &mut Option<Command>) {
     let palette = Palette::of(ui);
     card(ui, Some(palette.accent), |ui| {
@@ -27,7 +27,7 @@ pub(crate) fn show(ui: &mut Ui, scene: &Card<'_>, command: &mut Option<Command>)
     figures(ui, scene, command);
 }
 
-/// What it can show beside itself, and what is to be seen in what it shows.
+/// Shows the menu of variants, and a text on the chosen one.
 fn variants(ui: &mut Ui, scene: &Card<'_>, command: &mut Option<Command>) {
     let shown = scene.shown.and_then(|index| scene.variants.get(index));
     let now = shown.map_or(scene.first, |variant| variant.label);
@@ -43,13 +43,13 @@ fn variants(ui: &mut Ui, scene: &Card<'_>, command: &mut Option<Command>) {
                 }
             }
         });
-    rename(ui, &response.response, "What it shows".to_owned());
+    rename(ui, &response.response, "Variant".to_owned());
     if let Some(variant) = shown {
         ui.add(Label::new(RichText::new(variant.text).strong()).wrap());
     }
 }
 
-/// A row of an option: its name, and what sets it.
+/// Shows the name and the control of an option.
 fn option(ui: &mut Ui, index: usize, row: &CardRow<'_>, command: &mut Option<Command>) {
     ui.horizontal(|ui| {
         let size = egui::vec2(LABEL_WIDTH, ui.spacing().interact_size.y);
@@ -102,7 +102,7 @@ fn choice(ui: &mut Ui, row: &CardRow<'_>, choices: &[(&str, &str)]) -> Option<f3
     chosen
 }
 
-/// What was measured, and the button that measures it.
+/// Shows the measured figures, and the button that measures.
 fn figures(ui: &mut Ui, scene: &Card<'_>, command: &mut Option<Command>) {
     let Some(help) = scene.measure else { return };
     ui.add_space(4.0);

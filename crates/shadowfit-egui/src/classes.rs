@@ -1,14 +1,14 @@
-//! The classes of judged pixels: their names, their colours, and their shares.
+//! The classes of judged pixels: their names, colours and shares.
 
 use egui::Color32;
 use shadowfit_params::figures::{ERROR_COLORS, JudgedFigures};
 
 use crate::widgets::color;
 
-/// How a pixel of the picture compares with rays.
+/// Result of comparing a pixel with rays.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum PixelClass {
-    /// Sky, a surface that faces away from the light, or one beyond the shadow distance.
+    /// Sky, surfaces that face away from the light, and surfaces beyond the shadow distance.
     NotJudged,
     /// The picture agrees with the rays.
     Right,
@@ -23,10 +23,10 @@ pub enum PixelClass {
 }
 
 impl PixelClass {
-    /// The classes that are wrong, in the order of [`ERROR_COLORS`].
+    /// The wrong classes, in the order of [`ERROR_COLORS`].
     pub const WRONG: [Self; 4] = [Self::FalseShadow, Self::FalseLight, Self::Hole, Self::Edge];
 
-    /// Name for people.
+    /// Returns the name for people.
     pub const fn label(self) -> &'static str {
         match self {
             Self::NotJudged => "Not judged",
@@ -38,28 +38,28 @@ impl PixelClass {
         }
     }
 
-    /// What it means, in a sentence.
+    /// Returns the meaning, in a sentence.
     pub const fn help(self) -> &'static str {
         match self {
-            Self::NotJudged => "Sky, surfaces that face away from the light, and those beyond the shadow distance.",
+            Self::NotJudged => "Sky, surfaces that face away from the light, and surfaces beyond the shadow distance.",
             Self::Right => "The picture agrees with the rays.",
             Self::FalseShadow => "Lit in truth and dark in the picture, away from edges: acne.",
             Self::FalseLight => {
-                "Dark in truth and lit in the picture, away from edges, though the caster is in the map: a bias that is \
-                 too great, or a leak."
+                "Dark in truth and lit in the picture, away from edges, though the caster is in the map: too much \
+                 bias, or a leak."
             }
             Self::Hole => "Dark in truth and lit in the picture, because the caster is not in the map.",
-            Self::Edge => "Wrong close to a true edge, where the size of the texels explains it: aliasing.",
+            Self::Edge => "Wrong near a true edge, within the size of the texels: aliasing.",
         }
     }
 
-    /// Its colour in pictures, as sRGB bytes; `None` for pixels that are not wrong.
+    /// Returns the colour in pictures, as sRGB bytes; `None` for pixels that are not wrong.
     pub fn color(self) -> Option<[u8; 3]> {
         Self::WRONG.into_iter().zip(ERROR_COLORS).find_map(|(class, color)| (class == self).then_some(color))
     }
 }
 
-/// The wrong classes with their colours and their shares of the judged pixels, in per cent.
+/// Returns the wrong classes with their colours and their shares of the judged pixels, in per cent.
 pub(crate) fn shares(figures: &JudgedFigures) -> [(PixelClass, Color32, f32); 4] {
     let shares = [figures.false_shadow, figures.false_light, figures.hole, figures.edge];
     std::array::from_fn(|index| (PixelClass::WRONG[index], color(ERROR_COLORS[index]), shares[index]))

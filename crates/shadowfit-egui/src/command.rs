@@ -1,4 +1,4 @@
-//! The commands of an application with the panel: what its buttons, keys and menus ask the host to do.
+//! The commands that the panel's buttons, keys and menus give to the host.
 
 use std::path::PathBuf;
 
@@ -10,9 +10,9 @@ use crate::Artefact;
 /// The keys of the views, in the order of [`ViewMode::ALL`].
 pub(crate) const VIEW_KEYS: [&str; ViewMode::ALL.len()] = ["1", "2", "3", "4", "5", "6", "7", "8", "9", "0"];
 
-/// Something that a person asks the host to do. The panel asks only for what its [parts](crate::Part) need, and its
-/// docs say which; the others belong to the table of keys ([`KEYS`](crate::KEYS)) and to what a host adds around the
-/// panel. A host ignores those that it does not support.
+/// A user's request to the host. The panel only returns commands of its enabled [parts](crate::Part), marked
+/// in their docs. All others come from the table of keys ([`KEYS`](crate::KEYS)) and from controls that a
+/// host adds around the panel. A host ignores commands that it does not support.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Command {
@@ -20,7 +20,7 @@ pub enum Command {
     View(ViewMode),
     /// Show the view from outside, or the final picture if that view is shown already.
     ToggleOutside,
-    /// Mark wrong pixels in the next way: not at all, outlined, blinking.
+    /// Mark wrong pixels in the next way: off, outlined, blinking.
     NextMarks,
     /// Show the next choice of shadow maps in the inset: none, one, all.
     NextInset,
@@ -32,14 +32,14 @@ pub enum Command {
     ToggleSun,
     /// Pose the scene at a time of its animation, in seconds.
     Scrub(f32),
-    /// Move camera and settings so that the artefact is plainly visible. A button of the panel.
+    /// Move camera and settings so that the artefact is clearly visible. A button of the panel.
     ShowArtefact(Artefact),
-    /// Apply the cure of the artefact that is shown. A button of the panel.
+    /// Apply the cure of the shown artefact. A button of the panel.
     FixArtefact,
     /// Stop showing the artefact; settings and camera stay as they are. A button of the panel.
     CloseArtefact,
-    /// Show two techniques beside each other, or only the first; the host chooses what the second begins with. A button
-    /// of the panel.
+    /// Show two techniques beside each other, or only the first. The host chooses the initial second
+    /// technique. A button of the panel.
     Compare(Toggle),
     /// Move the bar between the two pictures of a comparison to this share of the width.
     Split(f32),
@@ -49,13 +49,13 @@ pub enum Command {
     CopyToOther,
     /// Undo the last change. A button of the panel.
     Undo,
-    /// Do again what was undone. A button of the panel.
+    /// Redo the change that was undone last. A button of the panel.
     Redo,
-    /// Put settings and camera back to where they began. A button of the panel.
+    /// Restore the initial settings and camera. A button of the panel.
     Reset,
-    /// Put the camera back to where it began. A button of the panel.
+    /// Restore the initial camera. A button of the panel.
     ResetCamera,
-    /// Take the camera's roll away.
+    /// Remove the camera's roll.
     LevelCamera,
     /// Put the eye at a point and look at another, both in metres.
     LookAt {
@@ -64,7 +64,8 @@ pub enum Command {
         /// The point to look at.
         target: [f64; 3],
     },
-    /// Fly toward what is at a point of the picture, given as shares of its width and height from the top left.
+    /// Fly toward the surface at a point of the picture, given as shares of its width and height from the top
+    /// left.
     Focus([f32; 2]),
     /// Save the view under a number from 1 to 9.
     SetBookmark(u8),
@@ -80,7 +81,7 @@ pub enum Command {
     Set(String, String),
     /// Use a technique, named by a preset or a file.
     Technique(String),
-    /// Show a variant of the sample by its index, or the sample as its source has it. A menu of the panel.
+    /// Show a variant of the sample by its index, or the sample as in its source. A menu of the panel.
     ShowSampleVariant(Option<usize>),
     /// Set an option of the sample. A control of the panel.
     SetSampleOption {
@@ -93,19 +94,19 @@ pub enum Command {
     MeasureSample,
     /// Start the search for settings with a lower error. A button of the panel.
     StartTune,
-    /// End the search early; what it has found so far counts. A button of the panel.
+    /// End the search early and keep its best result. A button of the panel.
     CancelTune,
-    /// Use what the search found. A button of the panel.
+    /// Use the result of the search. A button of the panel.
     ApplyTune,
-    /// Forget what the search found. If it was applied, the settings stay. A button of the panel.
+    /// Discard the result of the search. If it was applied, the settings stay. A button of the panel.
     DiscardTune,
     /// Check the graphics device, and show the report. A menu of the panel.
     CheckDevice,
-    /// End the check early; the checks that have not run say so. A button of the report.
+    /// End the check early. The report marks the checks that have not run. A button of the report.
     CancelCheck,
     /// Copy the report as text. A button of the report.
     CopyCheck,
-    /// Close the report, and end a check that is under way. A button of the report.
+    /// Close the report, and end a running check. A button of the report.
     CloseCheck,
     /// Save the technique that the controls edit under this name, replacing one of the same name. A button of the panel.
     SavePreset(String),
@@ -113,7 +114,7 @@ pub enum Command {
     DeletePreset(String),
     /// Copy the technique as Rust code. A menu of the panel.
     CopyRust,
-    /// Copy a link to what is on show. A menu of the panel.
+    /// Copy a link to the current scene and settings. A menu of the panel.
     CopyLink,
     /// Copy the command line that starts with this scene and these settings. A menu of the panel.
     CopyCommandLine,
@@ -124,7 +125,8 @@ pub enum Command {
     /// Save the plotted figures, [`Panel::figures_csv`](crate::Panel::figures_csv), to a file, or to a new one if none
     /// is named. A button of the panel.
     SaveFigures(Option<PathBuf>),
-    /// Use the dark or the light theme, or that of the system: [`egui::Context::set_theme`] does it. A menu of the panel.
+    /// Use the dark or the light theme, or the system's. [`egui::Context::set_theme`] applies it. A menu of
+    /// the panel.
     SetTheme(ThemePreference),
     /// Show or hide the table of keys, see [`help_overlay`](crate::help_overlay). A button of the panel.
     ToggleHelp,
@@ -136,7 +138,7 @@ pub enum Command {
     Quit,
 }
 
-/// Whether something is turned on, turned off, or switched.
+/// A request to turn something on, off, or over.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Toggle {
     /// Turn it on.
@@ -148,7 +150,7 @@ pub enum Toggle {
 }
 
 impl Toggle {
-    /// The new state of something that is on or off now.
+    /// Returns the new state.
     pub fn apply(self, is_on: bool) -> bool {
         match self {
             Self::On => true,

@@ -1,4 +1,4 @@
-//! Two techniques, A | B: which of them the controls edit, and what is done with both.
+//! Two techniques, A | B: the side that the controls edit, and commands for both.
 
 use egui::{Align, Button, Layout, RichText, Ui};
 
@@ -6,12 +6,12 @@ use crate::theme::Palette;
 use crate::widgets::{Icon, icon_button, title};
 use crate::{Command, Compare, Toggle, with_keys};
 
-/// The heading of the techniques, with a button that begins the comparison.
+/// Shows the heading of the techniques, with a button that starts the comparison.
 pub(crate) fn start(ui: &mut Ui, command: &mut Option<Command>) {
     ui.horizontal(|ui| {
         title(ui, "Technique");
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            let help = "Shows two techniques beside each other; B begins with a preset";
+            let help = "Shows two techniques beside each other; B starts with a preset";
             let help = with_keys(help, &Command::Compare(Toggle::Switch));
             if ui.button("Compare A | B").on_hover_text(help).clicked() {
                 *command = Some(Command::Compare(Toggle::On));
@@ -20,7 +20,7 @@ pub(crate) fn start(ui: &mut Ui, command: &mut Option<Command>) {
     });
 }
 
-/// The tabs of A and B.
+/// Shows the tabs of A and B.
 pub(crate) fn tabs(ui: &mut Ui, compare: &mut Compare<'_>, command: &mut Option<Command>) {
     let palette = Palette::of(ui);
     ui.horizontal(|ui| {
@@ -39,10 +39,10 @@ pub(crate) fn tabs(ui: &mut Ui, compare: &mut Compare<'_>, command: &mut Option<
             ui.spacing_mut().item_spacing.x = 1.0;
             let [from, to] = if *compare.edits_other { ["B", "A"] } else { ["A", "B"] };
             let copy = format!("Copy {from} to {to}");
-            let stop = with_keys("Shows A alone", &Command::Compare(Toggle::Switch));
+            let stop = with_keys("Shows only A", &Command::Compare(Toggle::Switch));
             for (icon, name, help, asked) in [
                 (Icon::X, "Stop comparing", stop.as_str(), Command::Compare(Toggle::Off)),
-                (Icon::Copy, &copy, "Makes both techniques the same.", Command::CopyToOther),
+                (Icon::Copy, &copy, "Makes both techniques equal.", Command::CopyToOther),
                 (Icon::ArrowLeftRight, "Swap A and B", "Swaps the two techniques.", Command::SwapSides),
             ] {
                 if icon_button(ui, icon, name, &format!("{name}. {help}")).clicked() {

@@ -1,4 +1,4 @@
-//! The dialog of the check of the graphics device: the sentence, a line for each check, and the report to copy.
+//! The dialog of the device check: the summary sentence, a line for each check, and the report to copy.
 
 use egui::{Align, Align2, Context, Id, Label, Layout, ProgressBar, RichText, ScrollArea, Ui, Vec2, Window};
 use shadowfit_params::device_check::{CheckReport, CheckRow, CheckState};
@@ -7,13 +7,13 @@ use crate::Command;
 use crate::theme::Palette;
 use crate::widgets::{at_least, caption, main_button};
 
-/// Width of the dialog where the window has room, in points.
+/// Width of the dialog if the window has room, in points.
 const WIDTH: f32 = 760.0;
 
 /// Least width at which the dialog shows results beside tolerances, in points.
 const SIDE_BY_SIDE: f32 = 560.0;
 
-/// Width of the names, and of the times at the right, in points.
+/// Widths of the names at the left and the times at the right, in points.
 const NAMES: f32 = 132.0;
 const TIMES: f32 = 52.0;
 
@@ -23,17 +23,17 @@ const GAP: f32 = 16.0;
 /// Distance of the dialog from the window's sides, in points.
 const MARGIN: f32 = 12.0;
 
-/// More than title bar, sentence, buttons and margins take, in points.
+/// Upper limit of the height of title bar, sentence, buttons and margins, in points.
 const AROUND: f32 = 210.0;
 
-/// How long the button says that the report was copied, in seconds.
+/// Duration of the confirmation that the report was copied, in seconds.
 const COPIED: f64 = 2.0;
 
 /// Title of the dialog.
 const TITLE: &str = "Check this GPU";
 
-/// Shows the report of a check over everything else. Returns the command that a button gives: copy the report, cancel the
-/// check, close the dialog, or check again.
+/// Shows the report of a check over everything else. Returns the command of a clicked button: copy the
+/// report, cancel the check, close the dialog, or check again.
 pub fn device_check_overlay(ctx: &Context, report: &CheckReport) -> Option<Command> {
     let room = ctx.content_rect().size() - Vec2::splat(2.0 * MARGIN);
     let (mut command, mut is_open) = (None, true);
@@ -61,12 +61,12 @@ pub fn device_check_overlay(ctx: &Context, report: &CheckReport) -> Option<Comma
     command
 }
 
-/// The device and the sentence.
+/// Shows the device and the summary sentence.
 fn head(ui: &mut Ui, report: &CheckReport) {
     let palette = Palette::of(ui);
     let fact = |name: &str| report.facts.iter().find(|fact| fact.0 == name).map_or("", |fact| fact.1.as_str());
     let device = if report.facts.is_empty() {
-        "Opening a device of its own".to_owned()
+        "Opening a separate device".to_owned()
     } else {
         format!("{}, {}", fact("adapter"), fact("backend"))
     };
@@ -85,12 +85,12 @@ fn head(ui: &mut Ui, report: &CheckReport) {
     ui.add_space(4.0);
 }
 
-/// Whether the dialog shows results beside tolerances.
+/// Returns whether the dialog shows results beside tolerances.
 fn is_wide(ui: &Ui) -> bool {
     ui.available_width() >= SIDE_BY_SIDE
 }
 
-/// The names of the columns.
+/// Shows the names of the columns.
 fn heads(ui: &mut Ui) {
     if is_wide(ui) {
         let head = |text: &'static str| {
@@ -102,7 +102,7 @@ fn heads(ui: &mut Ui) {
     }
 }
 
-/// A check: its name and state, its result, its tolerance and its time.
+/// Shows a check: its name and state, its result, its tolerance and its time.
 fn line(ui: &mut Ui, row: &CheckRow) {
     ui.separator();
     if is_wide(ui) {
@@ -117,7 +117,7 @@ fn line(ui: &mut Ui, row: &CheckRow) {
     tolerance(ui, &format!("Tolerance: {}", row.tolerance));
 }
 
-/// Shows four things beside each other; the last one ends at the right.
+/// Shows four things beside each other, the last one aligned to the right.
 fn columns(ui: &mut Ui, [first, second, third, last]: [&dyn Fn(&mut Ui); 4]) {
     ui.horizontal_top(|ui| {
         ui.spacing_mut().item_spacing.x = GAP;

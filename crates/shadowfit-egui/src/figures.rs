@@ -10,7 +10,7 @@ use crate::units::{brief_count, grouped};
 /// A figure of the whole frame: name, value, help.
 type Line = (&'static str, Option<String>, &'static str);
 
-/// What only techniques with traced edges have.
+/// Figures that only techniques with traced edges have.
 const OF_TRACED_EDGES: [&str; 2] = ["Traced pixels", "Edge passes"];
 
 fn lines(figures: &Figures) -> [Line; 10] {
@@ -19,26 +19,27 @@ fn lines(figures: &Figures) -> [Line; 10] {
         (
             "Pixels per texel",
             figures.pixels_per_texel.map(|pixels| format!("{pixels:.2}{map}")),
-            "Screen pixels that one shadow texel covers at the picture's centre, along its worse axis, and the map that \
-             is read there. Above 1, texels can be seen.",
+            "Screen pixels per shadow texel at the picture's centre, along the texel's worse axis, and the map that is \
+             read there. Above 1, texels are visible.",
         ),
         (
             "Frame",
             figures.frame_ms.map(|ms| format!("{ms:.2} ms, {:.0} Hz", 1000.0 / ms)),
-            "Time of a whole frame, and frames a second.",
+            "Time of a whole frame, and frames per second.",
         ),
         ("Shadow passes", figures.shadow_pass_ms.map(time), "GPU time of drawing all shadow maps."),
         ("Scene pass", figures.scene_pass_ms.map(time), "GPU time of drawing the picture."),
         (
             "Traced pixels",
             figures.traced.map(|share| format!("{share:.2} %")),
-            "Pixels of which the maps are not sure, so that rays make their edges, of those that face the light.",
+            "Pixels that the maps could not decide, so that rays decided them, in per cent of the pixels that face the \
+             light.",
         ),
-        ("Edge passes", figures.edges_ms.map(time), "GPU time of the passes that trace edges, and of what they read."),
+        ("Edge passes", figures.edges_ms.map(time), "GPU time of the passes that trace edges, and of their inputs."),
         (
             "Judging",
             figures.judge_ms.map(time),
-            "GPU time of judging the picture: finding what each pixel shows, and casting rays where no thread does.",
+            "GPU time of judging the picture: the probe pass, and shadow rays unless a thread traces them.",
         ),
         (
             "Shadow draws",
@@ -49,18 +50,18 @@ fn lines(figures: &Figures) -> [Line; 10] {
         (
             "Texels drawn",
             figures.shadow_texels.map(|texels| brief_count(texels as f64)),
-            "Texels of the maps that were drawn in this frame; the others were kept.",
+            "Texels of the maps that were drawn in this frame; all others were kept.",
         ),
     ]
 }
 
-/// What the folded section says: the frame time.
+/// Returns the summary of the folded section: the frame time.
 pub(crate) fn summary(figures: &Figures) -> String {
     figures.frame_ms.map(time).unwrap_or_default()
 }
 
 pub(crate) fn show(ui: &mut Ui, figures: &Figures) {
-    // Lines of text alone.
+    // These lines hold only text.
     ui.spacing_mut().interact_size.y = 0.0;
     let gap = 12.0;
     let half = 0.5 * (ui.available_width() - gap);
@@ -69,7 +70,7 @@ pub(crate) fn show(ui: &mut Ui, figures: &Figures) {
         ui.add_space(6.0);
     }
     Grid::new("figures").num_columns(2).min_col_width(half).spacing([gap, 3.0]).show(ui, |ui| {
-        // Most techniques trace nothing.
+        // Most techniques trace no edges.
         let is_there = |line: &Line| line.1.is_some() || !OF_TRACED_EDGES.contains(&line.0);
         for (name, value, help) in lines(figures).into_iter().filter(is_there) {
             ui.label(name).on_hover_text(help);

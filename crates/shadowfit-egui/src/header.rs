@@ -1,4 +1,4 @@
-//! The top of the panel: the scene, what can be undone, and what the application does with the whole.
+//! The header of the panel: the scene, undo and redo, and commands for the whole application.
 
 use egui::{Align, Button, Label, Layout, Popup, RichText, Sense, TextStyle, ThemePreference, Ui, Vec2};
 
@@ -7,10 +7,10 @@ use crate::units::grouped;
 use crate::widgets::{Icon, icon_button};
 use crate::{Changes, Command, Panel, Part, SceneLine, keys_of, with_keys};
 
-/// Line of the menu that opens the [check](crate::device_check_overlay).
+/// Menu entry that opens the [check](crate::device_check_overlay).
 const CHECK_THIS_GPU: &str = "Check this GPU…";
 
-/// Title, buttons, scene and message.
+/// Shows title, buttons, scene and message.
 pub(crate) fn show(
     ui: &mut Ui,
     panel: &Panel,
@@ -33,12 +33,12 @@ pub(crate) fn show(
     }
     match message {
         Some(message) => ui.add(Label::new(RichText::new(message).color(Palette::of(ui).accent)).wrap()),
-        // The line stays free, so that a message does not push what is below it.
+        // The line stays free, so that a message does not move the contents below it.
         None => ui.allocate_response(Vec2::new(0.0, ui.text_style_height(&TextStyle::Body)), Sense::hover()),
     };
 }
 
-/// From the right to the left.
+/// Shows the buttons from right to left.
 fn buttons(ui: &mut Ui, panel: &Panel, changes: Changes<'_>, command: &mut Option<Command>) {
     if panel.has(Part::DeviceCheck) {
         let check = "Compares this device's maps, look-ups and rays with the CPU's, in a minute or less on a GPU.";
@@ -59,24 +59,24 @@ fn buttons(ui: &mut Ui, panel: &Panel, changes: Changes<'_>, command: &mut Optio
     if panel.has(Part::Copy) {
         let line = "Copies the command that starts with this scene and these settings.";
         let items = [
-            ("Copy a link", "Copies a link to what is on show: scene, settings and camera.", Command::CopyLink),
+            ("Copy a link", "Copies a link to this scene, settings and camera.", Command::CopyLink),
             ("Copy as Rust code", "Copies the technique as Rust code.", Command::CopyRust),
             ("Copy the command line", line, Command::CopyCommandLine),
         ];
-        menu(ui, Icon::Copy, "Copy", "Copies the settings, to use them elsewhere.", items, command);
+        menu(ui, Icon::Copy, "Copy", "Copies the settings for use elsewhere.", items, command);
     }
     let items = [
-        ("Reset everything", "Puts settings and camera back to where they began.", Command::Reset),
-        ("Reset the camera", "Puts the camera back to where it began.", Command::ResetCamera),
+        ("Reset everything", "Restores the initial settings and camera.", Command::Reset),
+        ("Reset the camera", "Restores the initial camera.", Command::ResetCamera),
     ];
-    menu(ui, Icon::RotateCcw, "Reset", "Goes back to where settings and camera began.", items, command);
+    menu(ui, Icon::RotateCcw, "Reset", "Restores the initial settings or camera.", items, command);
     if panel.has(Part::Undo) {
         change_button(ui, Icon::Redo2, "Redo", changes.redo, Command::Redo, command);
         change_button(ui, Icon::Undo2, "Undo", changes.undo, Command::Undo, command);
     }
 }
 
-/// A button that undoes or redoes a change, by its name.
+/// Shows a button that undoes or redoes a named change.
 fn change_button(
     ui: &mut Ui,
     icon: Icon,
@@ -90,14 +90,14 @@ fn change_button(
     ui.add_enabled_ui(change.is_some(), |ui| button(ui, icon, name, &help, asked, command));
 }
 
-/// A button that asks for a command, with the command's keys behind its help.
+/// Shows a button for a command, with the command's keys after its help.
 fn button(ui: &mut Ui, icon: Icon, name: &str, help: &str, asked: Command, command: &mut Option<Command>) {
     if icon_button(ui, icon, name, &with_keys(help, &asked)).clicked() {
         *command = Some(asked);
     }
 }
 
-/// A button that opens a list of commands, each with its name and help.
+/// Shows a button that opens a list of commands, each with its name and help.
 fn menu<const N: usize>(
     ui: &mut Ui,
     icon: Icon,

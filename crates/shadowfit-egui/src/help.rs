@@ -6,7 +6,7 @@ use crate::keys::TOUCH;
 use crate::widgets::caption;
 use crate::{KEYS, KeyGroup};
 
-/// Which groups of [`KEYS`] stand below each other, by their number in each column.
+/// Number of groups of [`KEYS`] in each column.
 const COLUMNS: [usize; 3] = [2, 3, 4];
 
 /// Width of a column, in points.
@@ -15,11 +15,12 @@ const COLUMN: f32 = 300.0;
 /// Space between columns, in points.
 const GAP: f32 = 24.0;
 
-/// More than the title bar of the table and its margins take, in points.
+/// Upper limit of the height of the table's title bar and margins, in points.
 const TITLE_HEIGHT: f32 = 80.0;
 
-/// Shows the table of keys over everything else while `open`, and clears `open` when it is closed. It has three
-/// columns where the window is wide enough, else one, in which fingers come first where there are any.
+/// Shows the table of keys over everything else while `open`, and clears `open` when it is closed. The table
+/// has three columns if the window is wide enough, else one. In one column, touch gestures come first on
+/// touch screens.
 pub fn help_overlay(ctx: &Context, open: &mut bool) {
     let room = ctx.content_rect().size();
     let width = COLUMN * COLUMNS.len() as f32 + GAP * (COLUMNS.len() as f32 - 1.0);
@@ -31,7 +32,7 @@ pub fn help_overlay(ctx: &Context, open: &mut bool) {
         .collapsible(false)
         .default_width(if is_wide { width } else { COLUMN })
         .show(ctx, |ui| {
-            // Lines of text alone.
+            // These lines hold only text.
             ui.spacing_mut().interact_size.y = 0.0;
             ScrollArea::vertical()
                 .max_height(room.y - TITLE_HEIGHT)

@@ -5,32 +5,32 @@ use std::fmt::Write as _;
 
 use shadowfit_params::figures::Figures;
 
-/// Most samples that are kept, and drawn.
+/// Greatest number of stored samples.
 pub(crate) const CAPACITY: usize = 600;
 
-/// Least time between two samples, in seconds: with [`CAPACITY`], the last minute is kept.
+/// Least time between two samples, in seconds. With [`CAPACITY`] samples, the last minute is stored.
 const INTERVAL: f64 = 0.1;
 
-/// A figure that is kept over time.
+/// A figure over time.
 pub(crate) struct Series {
     pub(crate) name: &'static str,
     pub(crate) unit: &'static str,
     read: fn(&Figures) -> Option<f32>,
 }
 
-/// Every figure that is kept, in the order of the columns.
+/// All figures, in the order of the columns.
 pub(crate) const SERIES: [Series; 17] = [
     Series { name: "wrong", unit: "%", read: |f| Some(f.judged?.wrong) },
     Series { name: "false shadow", unit: "%", read: |f| Some(f.judged?.false_shadow) },
     Series { name: "false light", unit: "%", read: |f| Some(f.judged?.false_light) },
     Series { name: "hole", unit: "%", read: |f| Some(f.judged?.hole) },
     Series { name: "edge", unit: "%", read: |f| Some(f.judged?.edge) },
-    Series { name: "mean error", unit: "%", read: |f| Some(f.judged?.mean_error) },
+    Series { name: "light error", unit: "%", read: |f| Some(f.judged?.light_error) },
     Series { name: "crawl", unit: "%", read: |f| f.judged?.crawl },
     Series { name: "pixels per texel 95%", unit: "px", read: |f| Some(f.judged?.pixels_per_texel?[1]) },
     Series { name: "traced", unit: "%", read: |f| f.traced },
     Series { name: "wrong of B", unit: "%", read: |f| Some(f.judged_other?.wrong) },
-    Series { name: "mean error of B", unit: "%", read: |f| Some(f.judged_other?.mean_error) },
+    Series { name: "light error of B", unit: "%", read: |f| Some(f.judged_other?.light_error) },
     Series { name: "shadow passes", unit: "ms", read: |f| f.shadow_pass_ms },
     Series { name: "scene pass", unit: "ms", read: |f| f.scene_pass_ms },
     Series { name: "edge passes", unit: "ms", read: |f| f.edges_ms },
@@ -39,7 +39,7 @@ pub(crate) const SERIES: [Series; 17] = [
     Series { name: "texels drawn", unit: "texels", read: |f| f.shadow_texels.map(|texels| texels as f32) },
 ];
 
-/// The figures at one time; `None` where they were not measured.
+/// The figures at one time; `None` if not measured.
 #[derive(Clone, Debug, PartialEq)]
 struct Sample {
     /// Time, in seconds.
@@ -56,8 +56,8 @@ pub(crate) struct History {
 }
 
 impl History {
-    /// Takes in the figures of a frame at a time in seconds. Of the frames within a tenth of a second, the greatest of
-    /// each figure stays, so that a single slow frame is seen.
+    /// Adds the figures of a frame at a time in seconds. All frames within a tenth of a second share a sample
+    /// with the greatest value of each figure, so that a single slow frame stays visible.
     pub(crate) fn push(&mut self, time: f64, figures: &Figures) {
         if self.is_paused {
             return;
@@ -89,19 +89,19 @@ impl History {
         self.samples.is_empty()
     }
 
-    /// The points of a series: seconds before the last sample, so 0 or less, and the value.
+    /// Returns the points of a series: seconds relative to the last sample, so 0 or less, and the value.
     pub(crate) fn points(&self, series: usize) -> impl Iterator<Item = [f64; 2]> {
         let end = self.samples.back().map_or(0.0, |last| last.time);
         let point = move |sample: &Sample| Some([sample.time - end, f64::from(sample.values[series]?)]);
         self.samples.iter().filter_map(point)
     }
 
-    /// The last value of a series.
+    /// Returns the last value of a series.
     pub(crate) fn last(&self, series: usize) -> Option<f32> {
         self.samples.back()?.values[series]
     }
 
-    /// How long the history is, in seconds.
+    /// Returns the length of the history, in seconds.
     pub(crate) fn seconds(&self) -> f64 {
         match (self.samples.front(), self.samples.back()) {
             (Some(first), Some(last)) => last.time - first.time,
@@ -109,8 +109,8 @@ impl History {
         }
     }
 
-    /// All samples as comma-separated values: a line of names with units, and a line for each sample, oldest first.
-    /// What was not measured is empty.
+    /// Returns all samples as comma-separated values: a line of names with units, and a line for each sample,
+    /// oldest first. Figures that were not measured are empty.
     pub(crate) fn to_csv(&self) -> String {
         let mut text = String::from("time (s)");
         for series in &SERIES {

@@ -1,4 +1,4 @@
-//! What a host gives the panel in each frame, and what the panel gives back.
+//! The panel's input from the host in each frame, and its output.
 
 use shadowfit::Technique;
 use shadowfit_params::figures::{Figures, JudgedFigures};
@@ -6,35 +6,36 @@ use shadowfit_params::tool::Settings;
 
 use crate::{Artefact, Command};
 
-/// What the panel shows and edits in one frame. Begin with [`PanelInput::new`] and set what the host has besides.
+/// The panel's input for one frame. Start with [`PanelInput::new`] and set the other fields that the host
+/// supports.
 #[derive(Debug)]
 pub struct PanelInput<'a> {
     /// The settings that the controls edit.
     pub settings: &'a mut Settings,
     /// The figures of the last frame.
     pub figures: &'a Figures,
-    /// What is being looked at.
+    /// The current scene.
     pub scene: SceneLine<'a>,
-    /// The artefact that is being shown, if any.
+    /// The shown artefact, if any.
     pub artefact: Option<ShownArtefact<'a>>,
     /// The card of the scene, if it has one.
     pub card: Option<Card<'a>>,
-    /// The second technique, where two are compared.
+    /// The second technique of a comparison.
     pub compare: Option<Compare<'a>>,
-    /// How far the search for better settings is.
+    /// State of the search for better settings.
     pub tune: Tune<'a>,
-    /// What can be undone and done again.
+    /// Names of the changes that undo and redo would make.
     pub changes: Changes<'a>,
-    /// Techniques that a person saved, in the order that they are offered.
+    /// Techniques that the user saved, in display order.
     pub presets: &'a [UserPreset],
-    /// Why no picture can be judged against rays, where that is so.
+    /// Reason why no picture can be judged against rays, if there is one.
     pub unjudged: Option<&'a str>,
-    /// A readable message, such as the outcome of the last command.
+    /// A message for the user, such as the result of the last command.
     pub message: Option<&'a str>,
 }
 
 impl<'a> PanelInput<'a> {
-    /// A panel of the settings, figures and scene alone.
+    /// Makes an input with only settings, figures and scene.
     pub fn new(settings: &'a mut Settings, figures: &'a Figures, scene: SceneLine<'a>) -> Self {
         Self {
             settings,
@@ -55,85 +56,85 @@ impl<'a> PanelInput<'a> {
 /// The scene, in a line.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SceneLine<'a> {
-    /// Its name.
+    /// Name.
     pub name: &'a str,
-    /// Number of its triangles.
+    /// Number of triangles.
     pub triangles: u64,
-    /// Notes about it, such as parts that could not be shown.
+    /// Notes, such as parts that could not be shown.
     pub notes: &'a [String],
 }
 
-/// An artefact that is being shown.
+/// A demonstrated artefact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ShownArtefact<'a> {
-    /// Which one.
+    /// The artefact.
     pub artefact: Artefact,
-    /// Whether its cure is applied.
+    /// Whether the cure is applied.
     pub fixed: bool,
-    /// What to look for in this scene and view, in a sentence or two; empty where there is nothing to add.
+    /// Hint where to look in this scene and view, in a sentence or two; may be empty.
     pub narration: &'a str,
-    /// What the cure changed, a line each, such as "Constant bias: 0 → 1 texel".
+    /// Changes by the cure, a line each, such as "Constant bias: 0 → 1 texel".
     pub changes: &'a [String],
 }
 
 impl<'a> ShownArtefact<'a> {
-    /// An artefact without a cure, with a sentence about this scene and view.
+    /// Makes an artefact without its cure, with a sentence about this scene and view.
     pub fn new(artefact: Artefact, narration: &'a str) -> Self {
         Self { artefact, fixed: false, narration, changes: &[] }
     }
 }
 
-/// A scene with a card: what it teaches, what it can show, and options of its own.
+/// A scene with its own card, such as a classic sample: lesson, variants, and options.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Card<'a> {
-    /// Its name.
+    /// Name.
     pub title: &'a str,
-    /// What it teaches.
+    /// Lesson of the scene.
     pub text: &'a str,
-    /// What it does badly.
+    /// Weakness of the shown technique.
     pub flaw: &'a str,
-    /// Whether a technique of the settings draws it at present, so that the rest of the panel applies.
+    /// Whether it is currently drawn with a technique of the settings, so that the rest of the panel applies.
     pub is_technique: bool,
-    /// What it shows at first, by name.
+    /// Name of the initial variant.
     pub first: &'a str,
-    /// What else it can show.
+    /// Further variants.
     pub variants: &'a [CardChoice<'a>],
-    /// Which of them is on show; `None` for what it shows at first.
+    /// Index of the shown variant; `None` for the initial one.
     pub shown: Option<usize>,
-    /// Its options.
+    /// Options.
     pub rows: &'a [CardRow<'a>],
-    /// What measuring it does, if it can be measured.
+    /// Help of the measurement, if the scene can be measured.
     pub measure: Option<&'a str>,
-    /// What was measured, a line each.
+    /// Measured figures, a line each.
     pub figures: &'a [CardFigure],
 }
 
-/// Something that a scene with a card can show.
+/// A variant of a scene with a card.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CardChoice<'a> {
-    /// Its name.
+    /// Name.
     pub label: &'a str,
-    /// What is to be seen.
+    /// Text on the visible effect.
     pub text: &'a str,
 }
 
 /// An option of a scene with a card.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CardRow<'a> {
-    /// Its name.
+    /// Name.
     pub label: &'a str,
-    /// What it does.
+    /// Effect.
     pub help: &'a str,
-    /// What sets it.
+    /// Control.
     pub control: CardControl<'a>,
     /// The number, the index of the choice, or 1 for on.
     pub value: f32,
 }
 
-/// What sets an option.
+/// Control of an option.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum CardControl<'a> {
-    /// One of several, by name and label.
+    /// One of several options, by name and label.
     Choice(&'a [(&'a str, &'a str)]),
     /// A number.
     Number {
@@ -151,74 +152,74 @@ pub enum CardControl<'a> {
 /// A figure of a scene with a card.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CardFigure {
-    /// What was measured.
+    /// Name of the figure.
     pub name: String,
     /// The figure with its unit.
     pub value: String,
 }
 
-/// The other one of two techniques, A | B: A is that of the settings, B is [`Self::other`].
+/// The second technique of a comparison, A | B. A is the technique of the settings, B is [`Self::other`].
 #[derive(Debug)]
 pub struct Compare<'a> {
     /// Technique B.
     pub other: &'a mut Technique,
-    /// Whether the controls edit B. The panel sets it when a person chooses a side.
+    /// Whether the controls edit B. The panel sets it when the user chooses a side.
     pub edits_other: &'a mut bool,
 }
 
-/// How far a search for settings with a lower error is. Errors are in per cent, as those of [`JudgedFigures`].
+/// State of a search for settings with a lower error. Errors are in per cent, as in [`JudgedFigures`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Tune<'a> {
-    /// None was begun.
+    /// No search.
     #[default]
     Idle,
-    /// It is running.
+    /// A running search.
     Running {
-        /// Techniques that were judged so far.
+        /// Number of techniques judged so far.
         tried: u32,
-        /// Most that are judged.
+        /// Greatest number of techniques to judge.
         at_most: u32,
-        /// Error of the technique that it began with; NaN until it was judged, and nothing but `what` is shown.
+        /// Error of the initial technique. NaN until it was judged; then only `what` is shown.
         start_error: f32,
         /// Least error so far.
         best_error: f32,
-        /// What is being tried, in a few words, such as "Constant bias 1.5 texels".
+        /// Current candidate in a few words, such as "Constant bias 1.5 texels".
         what: &'a str,
     },
-    /// It has ended.
+    /// A finished search.
     Done {
-        /// Figures of the technique that it began with.
+        /// Figures of the initial technique.
         before: JudgedFigures,
-        /// Figures of the best one.
+        /// Figures of the best technique.
         after: JudgedFigures,
-        /// What the best one changes, a line each; empty where none was better.
+        /// Changes to the best technique, a line each; empty if none was better.
         changes: &'a [String],
         /// Whether the settings have the changes.
         is_applied: bool,
     },
-    /// It could not be done, with the reason.
+    /// A failed search, with the reason.
     Failed(&'a str),
 }
 
-/// What the next undo and redo would do, by name, such as "Constant bias"; `None` where there is nothing to do.
+/// Names of the changes that undo and redo would make, such as "Constant bias"; `None` if there is none.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Changes<'a> {
-    /// What would be undone.
+    /// Next change to undo.
     pub undo: Option<&'a str>,
-    /// What would be done again.
+    /// Next change to redo.
     pub redo: Option<&'a str>,
 }
 
-/// A technique that a person saved by name.
+/// A technique that the user saved by name.
 #[derive(Clone, Debug, PartialEq)]
 pub struct UserPreset {
-    /// Its name.
+    /// Name.
     pub name: String,
     /// The technique.
     pub technique: Technique,
 }
 
-/// What the person asked for in this frame, beside the settings.
+/// The user's requests in this frame, besides changes of the settings.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PanelOutput {
     /// The command, if any.
@@ -231,11 +232,11 @@ pub struct PanelOutput {
 pub enum Part {
     /// The buttons that show an artefact, and their card.
     Artefacts,
-    /// The figures of the picture against rays.
+    /// The figures of the picture, judged against rays.
     Quality,
     /// The search for better settings.
     Tune,
-    /// Two techniques, A | B.
+    /// Comparison of two techniques, A | B.
     Compare,
     /// Saving and deleting techniques by name.
     UserPresets,

@@ -1,4 +1,4 @@
-//! The keys: one table of what each of them does, which menus, the help, the docs and the host's own keyboard follow.
+//! The key table, which menus, the help, the docs and the host's keyboard handling share.
 
 use std::borrow::Cow;
 use std::str::FromStr;
@@ -11,7 +11,7 @@ use shadowfit_params::view_option;
 use crate::command::VIEW_KEYS;
 use crate::{Artefact, Command, Toggle};
 
-/// A key with the modifiers that it is pressed with.
+/// A key with its modifiers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Chord {
     /// The key.
@@ -24,32 +24,32 @@ pub struct Chord {
     pub alt: bool,
 }
 
-/// Keys that belong together.
+/// A group of keys.
 #[derive(Clone, Debug, PartialEq)]
 pub struct KeyGroup {
-    /// What they are about.
+    /// Subject of the group.
     pub heading: &'static str,
-    /// The keys, in the order that they are shown.
+    /// The keys, in display order.
     pub keys: Vec<KeyHelp>,
 }
 
 /// A line of the table of keys.
 #[derive(Clone, Debug, PartialEq)]
 pub struct KeyHelp {
-    /// The keys as they are printed on a keyboard, with `or` between two that do the same.
+    /// The keys as printed on a keyboard, with `or` between two that do the same.
     pub keys: &'static str,
-    /// What they do.
+    /// Action of the keys.
     pub does: Cow<'static, str>,
-    /// The command that they stand for; `None` for what is held, dragged or turned, and for gamepads.
+    /// Command of the keys; `None` for keys to hold, drags, wheels and gamepads.
     pub command: Option<Command>,
 }
 
-/// A line for a key that stands for a command.
+/// Makes a line for a key with a command.
 fn key(keys: &'static str, does: impl Into<Cow<'static, str>>, command: Command) -> KeyHelp {
     KeyHelp { keys, does: does.into(), command: Some(command) }
 }
 
-/// A line for what is held, dragged or turned.
+/// Makes a line for a key to hold, a drag, a wheel or a gamepad control.
 const fn held(keys: &'static str, does: &'static str) -> KeyHelp {
     KeyHelp { keys, does: Cow::Borrowed(does), command: None }
 }
@@ -58,14 +58,14 @@ const fn group(heading: &'static str, keys: Vec<KeyHelp>) -> KeyGroup {
     KeyGroup { heading, keys }
 }
 
-/// A digit for each view.
+/// Returns the lines of the views, with a digit each.
 fn views() -> Vec<KeyHelp> {
     let line = |(keys, mode)| key(keys, view_option(mode).label.to_lowercase(), Command::View(mode));
     VIEW_KEYS.into_iter().zip(ViewMode::ALL).map(line).collect()
 }
 
-/// Where keys are pressed. Browsers keep some keys for themselves: in them, what these do has other keys, and nothing
-/// quits.
+/// The environment of the keys. Browsers reserve some keys, so that these commands have other keys there, and
+/// no key quits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum KeyLayout {
     /// A window of the system.
@@ -75,7 +75,7 @@ pub enum KeyLayout {
 }
 
 impl KeyLayout {
-    /// The one that this program was built for: WebAssembly runs in pages.
+    /// Layout of this program. WebAssembly runs in pages.
     pub const HERE: Self = if cfg!(target_family = "wasm") { Self::Browser } else { Self::Window };
 
     const fn either(self, window: &'static str, browser: &'static str) -> &'static str {
@@ -86,10 +86,10 @@ impl KeyLayout {
     }
 }
 
-/// The keys that a host of the panel answers [here](KeyLayout::HERE), in the order that they are shown.
+/// The keys that a host of the panel handles [here](KeyLayout::HERE), in display order.
 pub static KEYS: LazyLock<Vec<KeyGroup>> = LazyLock::new(|| key_table(KeyLayout::HERE));
 
-/// The keys that a host of the panel answers, in the order that they are shown.
+/// Returns the keys that a host of the panel handles, in display order.
 pub fn key_table(layout: KeyLayout) -> Vec<KeyGroup> {
     let mut groups = vec![
         group("Fly", fly(layout)),
@@ -110,20 +110,20 @@ pub fn key_table(layout: KeyLayout) -> Vec<KeyGroup> {
     groups
 }
 
-/// The heading of what fingers do.
+/// Heading of touch gestures.
 pub(crate) const TOUCH: &str = "Touch";
 
-/// What pages cannot do.
+/// Action that pages lack.
 const QUIT: &str = "quit";
 
-/// Pages can lock the pointer.
+/// Returns the keys for flying. Pages can lock the pointer.
 fn fly(layout: KeyLayout) -> Vec<KeyHelp> {
     let mut keys = vec![
         held("W A S D", "move"),
         held("Q, E", "down, up"),
         held("Arrow keys", "look around"),
         held("Left mouse drag", "look around"),
-        held("Double click", "focus on what is there"),
+        held("Double click", "focus on this point"),
         held("Shift", "move fast"),
         held("Wheel", "flying speed"),
     ];
@@ -138,7 +138,7 @@ fn artefacts() -> Vec<KeyHelp> {
         key("Z", "show acne", Command::ShowArtefact(Artefact::Acne)),
         key("X", "show aliasing", Command::ShowArtefact(Artefact::Aliasing)),
         key("C", "show a clipping hole", Command::ShowArtefact(Artefact::ClippingHole)),
-        key("F", "fix what is shown", Command::FixArtefact),
+        key("F", "fix the artefact", Command::FixArtefact),
         key("T", "auto-tune", Command::StartTune),
     ]
 }
@@ -153,10 +153,11 @@ fn picture() -> Vec<KeyHelp> {
         key("N", "level the camera", Command::LevelCamera),
         key("L", "animate the sun", Command::ToggleSun),
         key("Space", "play or pause", Command::TogglePlay),
+        held("Rest pointer", "explain this pixel, if paused"),
     ]
 }
 
-/// Browsers change tabs with Control and a digit.
+/// Returns the keys of bookmarks. Browsers change tabs with Control and a digit.
 fn bookmarks(layout: KeyLayout) -> Vec<KeyHelp> {
     let [go, set] = [("Ctrl+1 … 9", "Alt+1 … 9"), ("Ctrl+Shift+1 … 9", "Alt+Shift+1 … 9")];
     vec![
@@ -165,7 +166,7 @@ fn bookmarks(layout: KeyLayout) -> Vec<KeyHelp> {
     ]
 }
 
-/// Browsers open a page with Ctrl+O.
+/// Returns the keys of files. Browsers open a page with Ctrl+O.
 fn files(layout: KeyLayout) -> Vec<KeyHelp> {
     vec![
         key("Ctrl+Z", "undo", Command::Undo),
@@ -178,7 +179,7 @@ fn files(layout: KeyLayout) -> Vec<KeyHelp> {
     ]
 }
 
-/// Browsers show their own help with F1.
+/// Returns the keys of the window. Browsers show their own help with F1.
 fn window(layout: KeyLayout) -> Vec<KeyHelp> {
     let escape = layout.either("close a menu or this help; else quit", "close a menu or this help");
     vec![
@@ -194,8 +195,8 @@ fn touch() -> Vec<KeyHelp> {
         held("Drag", "look around"),
         held("Two fingers", "move"),
         held("Pinch", "fly forward or back"),
-        held("Tap", "why this pixel is so"),
-        held("Double tap", "focus on what is there"),
+        held("Tap", "explain this pixel"),
+        held("Double tap", "focus on this point"),
     ]
 }
 
@@ -208,20 +209,20 @@ fn gamepad() -> Vec<KeyHelp> {
     ]
 }
 
-/// What ends the keys of a line that stands for all digits from 1.
+/// End of the keys of a line for all digits from 1.
 const DIGITS: &str = "1 … 9";
 
-/// The lines that stand for a command, with that command.
+/// Returns the lines with a command, and that command.
 fn commands(groups: &[KeyGroup]) -> impl Iterator<Item = (&KeyHelp, &Command)> {
     groups.iter().flat_map(|group| &group.keys).filter_map(|line| Some((line, line.command.as_ref()?)))
 }
 
-/// The keys of a command as they are printed on a keyboard; empty for a command without any.
+/// Returns the keys of a command as printed on a keyboard; empty if it has none.
 pub fn keys_of(command: &Command) -> &'static str {
     commands(&KEYS).find(|(_, other)| *other == command).map_or("", |(line, _)| line.keys)
 }
 
-/// A help text with the keys of a command behind it.
+/// Returns a help text followed by the keys of a command.
 pub fn with_keys(text: &str, command: &Command) -> String {
     match keys_of(command) {
         "" => text.to_owned(),
@@ -230,7 +231,7 @@ pub fn with_keys(text: &str, command: &Command) -> String {
 }
 
 impl KeyHelp {
-    /// Each chord of the line with its command.
+    /// Returns each chord of the line with its command.
     fn chords(&self) -> impl Iterator<Item = (Chord, Command)> {
         self.command.iter().flat_map(|command| match self.keys.strip_suffix(DIGITS) {
             Some(modifiers) => (1..=9)
@@ -243,7 +244,7 @@ impl KeyHelp {
     }
 }
 
-/// The command of a digit, for a line that stands for all of them.
+/// Returns the command of a digit, for a line for all digits.
 fn of_digit(command: &Command, digit: u8) -> Command {
     match command {
         Command::GoToBookmark(_) => Command::GoToBookmark(digit),
@@ -256,14 +257,14 @@ fn chord(text: &str) -> Option<Chord> {
     text.parse().ok()
 }
 
-/// The text names no key.
+/// Error for a text that names no key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct NoSuchKey;
 
 impl FromStr for Chord {
     type Err = NoSuchKey;
 
-    /// Reads a key as `w`, `Ctrl+Z` or `ctrl+shift+3`, in upper or lower case.
+    /// Parses a key such as `w`, `Ctrl+Z` or `ctrl+shift+3`, in upper or lower case.
     fn from_str(text: &str) -> Result<Self, NoSuchKey> {
         let (modifiers, name) = text.rsplit_once('+').map_or(("", text), |(modifiers, name)| (modifiers, name));
         let is_it = |key: &&Key| key.name().eq_ignore_ascii_case(name);
@@ -282,8 +283,8 @@ impl FromStr for Chord {
 }
 
 impl Chord {
-    /// The command that the key stands for when it is pressed. Shift matters only where [`KEYS`] has the key both with
-    /// and without it: a key works while Shift is held to fly fast.
+    /// Returns the command of the pressed key. Shift is ignored unless [`KEYS`] has the key with and without
+    /// it, so that keys work while Shift is held to fly fast.
     pub fn command(self) -> Option<Command> {
         self.command_in(&KEYS)
     }

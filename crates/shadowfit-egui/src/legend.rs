@@ -1,4 +1,4 @@
-//! What the colours of a view mean.
+//! The legends of the views' colours.
 
 use egui::{
     Align2, Area, Context, CornerRadius, Frame, Id, Mesh, Order, Pos2, Rect, Role, Sense, Shape, TextStyle, Ui, Vec2,
@@ -11,37 +11,37 @@ use crate::classes::shares;
 use crate::units::percent;
 use crate::widgets::{caption, color, color_entry, color_line};
 
-/// Colours of the view of map updates, as sRGB bytes: texels that were kept, those drawn anew, and what moves.
+/// Colours of the view of map updates, as sRGB bytes: kept texels, redrawn texels, and moving casters.
 pub const MAP_UPDATE_COLORS: [[u8; 3]; 3] = [[86, 180, 233], [230, 159, 0], [204, 121, 167]];
 
-/// What [`MAP_UPDATE_COLORS`] stand for.
+/// Meanings of [`MAP_UPDATE_COLORS`].
 const MAP_UPDATES: [(&str, &str); 3] = [
-    ("kept", "Texels that stay as they were drawn in an earlier frame."),
-    ("drawn anew", "Texels that were drawn in this frame."),
-    ("moves", "Casters that move, and are drawn over what is kept."),
+    ("kept", "Texels kept from an earlier frame."),
+    ("redrawn", "Texels drawn in this frame."),
+    ("moving", "Moving casters, drawn over the kept texels."),
 ];
 
-/// What [`EDGE_COLORS`] stand for.
+/// Meanings of [`EDGE_COLORS`].
 const EDGES: [(&str, &str); 2] = [
-    ("traced", "Pixels of which the maps are not sure: rays decide."),
-    ("left to the filter", "Pixels that no ray was traced for, and whose light the filter decides."),
+    ("traced", "Pixels that the maps could not decide: rays decide."),
+    ("left to the filter", "Undecided pixels without a ray: the filter decides."),
 ];
 
 /// Width of the scale of pixels per texel, in points.
 const RAMP_WIDTH: f32 = 216.0;
 
-/// Whether the view has colours to explain, with its marks: [`legend`] shows nothing otherwise.
+/// Returns whether the view or its marks have colours to explain. If not, [`legend`] shows nothing.
 pub fn has_legend(view: &ViewSettings) -> bool {
     !view.mode.colors().is_empty() || has_marks(view)
 }
 
-/// Whether wrong pixels are marked: where the camera's picture is shown.
+/// Returns whether wrong pixels are marked, which only views of the camera can do.
 fn has_marks(view: &ViewSettings) -> bool {
     view.marks != ErrorMarks::Off && view.mode.shows_camera()
 }
 
-/// What the colours of the view mean: the classes of wrong pixels with their shares, the scale of pixels per texel,
-/// the tints of the maps, or what was drawn of them.
+/// Shows the meanings of the view's colours: the classes of wrong pixels with their shares, the scale of
+/// pixels per texel, the tints of the maps, or the kinds of map updates.
 pub fn legend(ui: &mut Ui, view: &ViewSettings, figures: &Figures) {
     let colors = view.mode.colors();
     for color in colors {
@@ -49,7 +49,7 @@ pub fn legend(ui: &mut Ui, view: &ViewSettings, figures: &Figures) {
             ViewColors::Classes => classes(ui, figures),
             ViewColors::PixelsPerTexel => ramp(ui, "pixels per texel"),
             ViewColors::Maps => maps(ui, figures),
-            ViewColors::Demand => ramp(ui, "pixels per texel where the picture looks"),
+            ViewColors::Demand => ramp(ui, "pixels per texel at visible points"),
             ViewColors::Updates => named(ui, MAP_UPDATES.into_iter().zip(MAP_UPDATE_COLORS)),
             ViewColors::Traced => named(ui, EDGES.into_iter().zip(EDGE_COLORS)),
         }
@@ -59,8 +59,8 @@ pub fn legend(ui: &mut Ui, view: &ViewSettings, figures: &Figures) {
     }
 }
 
-/// The [`legend`] on a ground of its own, in the lower right corner of `picture`, or nothing where the view has no
-/// colours to explain.
+/// Shows the [`legend`] on its own background, in the lower right corner of `picture`. Shows nothing if the
+/// view has no colours to explain.
 pub fn legend_overlay(ctx: &Context, picture: Rect, view: &ViewSettings, figures: &Figures) {
     /// Distance from the edges of the picture, in points.
     const MARGIN: f32 = 10.0;
@@ -98,13 +98,13 @@ fn maps(ui: &mut Ui, figures: &Figures) {
     let there = figures.maps.iter().zip(MAP_TINTS).enumerate().filter(|(_, (map, _))| map.is_some());
     color_line(ui, |ui| {
         for (map, (_, tint)) in there {
-            let help = "Read from this map; map 1 is the nearest.";
+            let help = "Surfaces that read this map. Map 1 is the nearest one, or the finest window.";
             color_entry(ui, color(tint), &format!("map {}", map + 1), None).on_hover_text(help);
         }
     });
 }
 
-/// Colours with their names and helps.
+/// Shows colours with their names and helps.
 fn named(ui: &mut Ui, entries: impl Iterator<Item = ((&'static str, &'static str), [u8; 3])>) {
     color_line(ui, |ui| {
         for ((name, help), fill) in entries {
@@ -113,16 +113,16 @@ fn named(ui: &mut Ui, entries: impl Iterator<Item = ((&'static str, &'static str
     });
 }
 
-/// The scale of pixels per texel, with a tick at each octave.
+/// Shows the scale of pixels per texel, with a tick at each octave.
 fn ramp(ui: &mut Ui, title: &str) {
-    /// Steps that the colours are drawn in.
+    /// Number of colour steps.
     const STEPS: usize = 48;
     caption(ui, title);
     let small = TextStyle::Small.resolve(ui.style());
     let size = Vec2::new(RAMP_WIDTH, 12.0 + ui.text_style_height(&TextStyle::Small));
     let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
     response.widget_info(|| WidgetInfo::labeled(Role::Image, true, "Colours of 1/8 to 8 pixels per texel"));
-    // Half a tick's number stands out at both ends.
+    // Half of the first and the last number extends beyond the bar.
     let bar = Rect::from_min_max(rect.min + Vec2::new(10.0, 0.0), Pos2::new(rect.right() - 10.0, rect.top() + 10.0));
     let octaves = PIXELS_PER_TEXEL_COLORS.len() - 1;
     let mut mesh = Mesh::default();

@@ -1,8 +1,9 @@
 //! The shadow tuning panel, embeddable in any [egui] application.
 //!
-//! It edits a [`Settings`], shows a [`Figures`](shadowfit_params::figures::Figures) live, and asks its host for what only the
-//! host can do (moving the camera, judging the picture, taking a picture) by returning a [`Command`]. Its controls come
-//! from [`shadowfit_params`], so that a new parameter gets a control without further code.
+//! It edits a [`Settings`] and shows live [`Figures`](shadowfit_params::figures::Figures). For actions that
+//! only the host can do (moving the camera, judging the picture, saving a screenshot) it returns a
+//! [`Command`]. Its controls come from [`shadowfit_params`], so that a new parameter gets a control without
+//! further code.
 //!
 //! ```
 //! use shadowfit_params::figures::Figures;
@@ -94,19 +95,18 @@ pub use views::{view_bar, view_menu};
 pub use why::{WhyCard, why_card, why_overlay};
 pub use widgets::{Icon, icon_button, named_icon_button};
 
-/// Width that the panel is laid out for, in points, margins included.
+/// Layout width of the panel, in points, margins included.
 pub const PANEL_WIDTH: f32 = 360.0;
 
-/// The tuning panel. Keep one for as long as its host lives: it remembers the plotted figures and the names of the
+/// The tuning panel. Keep one for the host's lifetime: it stores the plotted figures and the names of the
 /// techniques.
 #[derive(Clone, Debug, Default)]
 pub struct Panel {
-    /// What the reset button of a parameter goes back to. A host that begins with settings of its
-    /// own puts them here.
+    /// Settings that the reset buttons restore. A host with its own initial settings puts them here.
     pub defaults: Settings,
-    /// Ids of parameters that the host does not use and that get no control.
+    /// Ids of parameters that the host does not use, and that get no control.
     pub hidden: BTreeSet<&'static str>,
-    /// Parts that the host does not use and that are not shown.
+    /// Parts that the host does not use, and that are not shown.
     pub hidden_parts: BTreeSet<Part>,
     technique: technique::Menu,
     plots: plots::Plots,
@@ -114,43 +114,43 @@ pub struct Panel {
 }
 
 impl Panel {
-    /// A panel with nothing plotted yet.
+    /// Makes a panel with empty plots.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Gives the parameters of these ids no control.
+    /// Hides the controls of parameters with these ids.
     #[must_use]
     pub fn with_hidden(mut self, ids: impl IntoIterator<Item = &'static str>) -> Self {
         self.hidden.extend(ids);
         self
     }
 
-    /// Leaves out these parts, so that their commands are never asked for.
+    /// Hides these parts, so that the panel never returns their commands.
     #[must_use]
     pub fn without(mut self, parts: impl IntoIterator<Item = Part>) -> Self {
         self.hidden_parts.extend(parts);
         self
     }
 
-    /// Names the technique that the controls edit after a file or whatever else the host opened it from. The
-    /// menu of techniques shows that name and, once the technique is changed, offers it again.
+    /// Names the technique that the controls edit, after the file or other source that the host opened. The
+    /// menu of techniques shows the name and, once the technique is changed, offers the original again.
     pub fn name_technique(&mut self, name: impl Into<String>, technique: &Technique) {
         self.technique.open(name.into(), technique);
     }
 
-    /// The plotted figures as comma-separated values, which [`Command::SaveFigures`] asks the host to save.
+    /// Returns the plotted figures as comma-separated values, for [`Command::SaveFigures`].
     pub fn figures_csv(&self) -> String {
         self.plots.history.to_csv()
     }
 
-    /// Whether the host uses a part.
+    /// Returns whether the host uses a part.
     pub(crate) fn has(&self, part: Part) -> bool {
         !self.hidden_parts.contains(&part)
     }
 
-    /// Shows the panel in the whole of `ui`: its top, and the rest with a scroll bar where it is higher than that.
-    /// Call it once a frame.
+    /// Shows the panel in the whole of `ui`: a fixed header, and the rest with a scroll bar if it is too
+    /// high. Call it once a frame.
     pub fn show(&mut self, ui: &mut Ui, mut input: PanelInput<'_>) -> PanelOutput {
         let mut command = None;
         if self.has(Part::Plots) {
@@ -197,7 +197,7 @@ impl Panel {
         }
     }
 
-    /// What chooses the technique as a whole: the side, and the menu.
+    /// Shows the controls for the technique as a whole: the side, and the menu.
     fn technique_head(&mut self, ui: &mut Ui, input: &mut PanelInput<'_>, command: &mut Option<Command>) {
         let mut side = 0;
         match &mut input.compare {
@@ -215,7 +215,7 @@ impl Panel {
         edit(input, |settings| menu.show(ui, &mut settings.technique, side, saved, command));
     }
 
-    /// The rows that are used most, the groups of the technique, the figures, and what only tools have.
+    /// Shows the most used rows, the groups of the technique, the figures, and the groups of the tools.
     fn sections(&mut self, ui: &mut Ui, input: &mut PanelInput<'_>, command: &mut Option<Command>) {
         let hidden = &self.hidden;
         let rows = Rows { defaults: &self.defaults, has: &|parameter: &Parameter| !hidden.contains(parameter.id) };
@@ -225,7 +225,7 @@ impl Panel {
             rows.groups(ui, technique_groups(), settings);
         });
         let summary = figures::summary(input.figures);
-        let help = "What each map holds and costs, and what the passes take.";
+        let help = "Contents and cost of each map, and the time of the passes.";
         Section { title: "Figures", help, summary: &summary, is_open: false }
             .show(ui, |ui| figures::show(ui, input.figures));
         if !self.hidden_parts.contains(&Part::Plots) {
@@ -236,7 +236,7 @@ impl Panel {
         edit_shared(input, |settings| rows.groups(ui, TOOL_GROUPS, settings));
     }
 
-    /// The rows that the search finds.
+    /// Shows the rows that match the search.
     fn found(&self, ui: &mut Ui, input: &mut PanelInput<'_>) {
         let rows = Rows { defaults: &self.defaults, has: &|parameter| !self.hidden.contains(parameter.id) };
         let of_technique: Vec<_> = technique_groups().collect();
@@ -244,12 +244,13 @@ impl Panel {
         edit(input, |settings| count += rows.found(ui, &self.search, &of_technique, settings));
         edit_shared(input, |settings| count += rows.found(ui, &self.search, &TOOL_GROUPS, settings));
         if count == 0 {
-            caption(ui, "No setting that has an effect now has this in its name or help.");
+            caption(ui, "No active setting has these words in its name or help.");
         }
     }
 }
 
-/// Edits what both techniques share. The near plane moves the shadow distance, and so it does that of both.
+/// Edits settings that both techniques share. A change of the near plane also changes the shadow distance of
+/// both techniques.
 fn edit_shared(input: &mut PanelInput<'_>, change: impl FnOnce(&mut Settings)) {
     let near = input.settings.camera.near;
     change(input.settings);
@@ -263,7 +264,7 @@ fn edit_shared(input: &mut PanelInput<'_>, change: impl FnOnce(&mut Settings)) {
     }
 }
 
-/// Edits the settings with the technique of the side that the controls are for.
+/// Edits the settings with the technique of the selected side.
 fn edit(input: &mut PanelInput<'_>, change: impl FnOnce(&mut Settings)) {
     let mut other = input.compare.as_mut().filter(|compare| *compare.edits_other).map(|compare| &mut *compare.other);
     if let Some(other) = &mut other {

@@ -1,5 +1,4 @@
-//! What tells maps apart: their numbers on their tints, the table of their figures, and the buttons
-//! that choose one.
+//! Maps by number and tint: the table of their figures, and the buttons that choose one.
 
 use egui::{Button, Color32, Grid, Response, RichText, Role, Stroke, Ui, WidgetInfo};
 use shadowfit::BoundSource;
@@ -13,21 +12,20 @@ use crate::theme::contrast;
 use crate::units::{brief_count, grouped, length, short, size};
 use crate::widgets::{badge, color};
 
-/// The tint of a map, and what can be read on it.
+/// Returns the tint of a map, and the text colour on it.
 fn colours(map: usize) -> (Color32, Color32) {
     let tint = color(MAP_TINTS[map % MAX_MAPS]);
     let is_light = contrast(tint, Color32::BLACK) > contrast(tint, Color32::WHITE);
     (tint, if is_light { Color32::BLACK } else { Color32::WHITE })
 }
 
-/// The number of a map on its tint.
+/// Shows the number of a map on its tint.
 pub(crate) fn badge_of(ui: &mut Ui, map: usize) -> Response {
     let (tint, text) = colours(map);
     badge(ui, &(map + 1).to_string(), tint, text, &format!("Map {}", map + 1))
 }
 
-/// A button for each of `count` maps, with the one of `selected` filled; returns the index of the one
-/// that was clicked.
+/// Shows a button for each of `count` maps, with `selected` filled. Returns the index of the clicked one.
 pub(crate) fn selector(
     ui: &mut Ui,
     count: u32,
@@ -55,39 +53,38 @@ pub(crate) fn selector(
     clicked
 }
 
-/// A column: its name and what it says.
+/// A column: its name and its help.
 type Column = (&'static str, &'static str);
 
-/// What the maps hold.
+/// Columns for the contents of the maps.
 const HOLD: [Column; 5] = [
-    (
-        "Map",
-        "Number of the map, the nearest first and of windows the finest first, on the colour that the view of maps gives it.",
-    ),
+    ("Map", "Number of the map, in its colour in the view Maps. Map 1 is the nearest one, or the finest window."),
     (
         "Made for",
-        "Distances from the camera, in metres, that the map is made for; by view depth, points between them read it. Of \
-         a window, which is made for no distances, the width and height of what it holds across the light.",
+        "Range of view depths that the map is fitted to, in metres. With selection by view depth, points in this range \
+         read the map. For a window, which has no such range: the width and height of its area, perpendicular to the \
+         light.",
     ),
-    ("Texel", "Width and height of one texel across the light."),
+    ("Texel", "Width and height of one texel, perpendicular to the light."),
     (
         "Depth",
-        "Extent of the map along the light. ⚠ marks a map whose depths are rounded by more than its bias, so that lit \
-         surfaces darken in bands: raise the depth steps of the bias.",
+        "Depth range of the map along the light. ⚠ marks a map whose depths are rounded by more than its bias, so that \
+         lit surfaces darken in bands: raise Depth steps of the bias.",
     ),
-    ("Waste", "Share of the map's area that lies beside what it is made for."),
+    ("Waste", "Share of the map's area outside the part of the view that the map is made for."),
 ];
 
-/// What the maps cost.
+/// Columns for the cost of the maps.
 const COST: [Column; 5] = [
     HOLD[0],
     ("Draws", "Draw calls of the map's shadow pass."),
     ("Triangles", "Triangles drawn into the map."),
-    ("Texels drawn", "Texels of the map that were drawn in this frame; the others were kept."),
+    ("Texels drawn", "Texels of the map that were drawn in this frame; all others were kept."),
     ("Pass", "GPU time of the map's shadow passes."),
 ];
 
-/// Two tables with a line for each map: what it holds and what it costs. Hovering a line says all that is known.
+/// Shows two tables with a line for each map: its contents and its cost. Hovering over a line shows all
+/// details.
 pub(crate) fn tables(ui: &mut Ui, figures: &Figures) {
     table(ui, "What the maps hold", HOLD, figures, held);
     ui.add_space(4.0);
@@ -118,7 +115,7 @@ fn table(
     });
 }
 
-/// What a map holds, behind its number.
+/// Returns the cells for the contents of a map.
 fn held(figures: &MapFigures) -> [Option<String>; 4] {
     let is_window = figures.bounds_from[0] == BoundSource::Window;
     let view_depths = figures.view_depths.map(|[near, far]| format!("{} – {}", short(near), short(far)));
@@ -130,7 +127,7 @@ fn held(figures: &MapFigures) -> [Option<String>; 4] {
     ]
 }
 
-/// What a map costs, behind its number.
+/// Returns the cells for the cost of a map.
 fn costs(figures: &MapFigures) -> [Option<String>; 4] {
     [
         figures.draws.map(|draws| grouped(draws.into())),
@@ -140,7 +137,7 @@ fn costs(figures: &MapFigures) -> [Option<String>; 4] {
     ]
 }
 
-/// All that is known of a map, line by line.
+/// Returns all details of a map, line by line.
 fn details(map: usize, figures: &MapFigures) -> String {
     let [left, right, bottom, top, far, near] = figures.bounds_from.map(name);
     let title = if figures.is_empty { ": no receiver is in view" } else { "" };
@@ -165,7 +162,7 @@ fn details(map: usize, figures: &MapFigures) -> String {
     lines.join("\n")
 }
 
-/// What set a plane, in a word.
+/// Returns the cause of a plane, in a word or two.
 fn name(constraint: BoundSource) -> &'static str {
     match constraint {
         BoundSource::View => "view",

@@ -1,4 +1,4 @@
-//! The controls of the settings: those that are used most, a search, and the groups.
+//! The controls of the settings: the most used ones, a search, and the groups.
 
 use egui::{Align2, Margin, TextEdit, Ui, Vec2};
 use shadowfit_params::tool::Settings;
@@ -9,23 +9,23 @@ use crate::icon::paint_icon;
 use crate::rows;
 use crate::widgets::{Icon, Section, caption, icon_button};
 
-/// Ids of the parameters that stand before all groups, and not in theirs.
+/// Ids of the parameters that are shown above all groups instead of in their own group.
 const QUICK: [&str; 6] =
     ["fit.kind", "splits.count", "map.resolution", "fit.max_distance", "map.filter", "bias.constant"];
 
-/// The groups that tools alone have, in the order that they are shown.
+/// The groups of the tools, in display order.
 pub(crate) const TOOL_GROUPS: [Group; 4] = [Group::Input, Group::Light, Group::Camera, Group::View];
 
-/// What the rows are shown with.
+/// Context of the rows.
 pub(crate) struct Rows<'a> {
-    /// What resets go back to.
+    /// Settings that resets restore.
     pub(crate) defaults: &'a Settings,
     /// Whether a parameter gets a row at all.
     pub(crate) has: &'a dyn Fn(&Parameter) -> bool,
 }
 
 impl Rows<'_> {
-    /// The field for the search.
+    /// Shows the field for the search.
     pub(crate) fn search_field(ui: &mut Ui, search: &mut String) {
         ui.horizontal(|ui| {
             let margin = Margin { left: 26, ..Margin::from(ui.spacing().button_padding) };
@@ -43,7 +43,7 @@ impl Rows<'_> {
         });
     }
 
-    /// The rows that are used most.
+    /// Shows the most used rows.
     pub(crate) fn quick(&self, ui: &mut Ui, settings: &mut Settings) {
         for parameter in QUICK.into_iter().filter_map(parameter).filter(|parameter| (self.has)(parameter)) {
             if rows::is_shown(parameter, settings) {
@@ -53,7 +53,7 @@ impl Rows<'_> {
         }
     }
 
-    /// A section for each of these groups.
+    /// Shows a section for each group.
     pub(crate) fn groups(&self, ui: &mut Ui, groups: impl IntoIterator<Item = Group>, settings: &mut Settings) {
         for group in groups {
             let is_here = |parameter: &&Parameter| (self.has)(parameter) && !QUICK.contains(&parameter.id);
@@ -69,7 +69,7 @@ impl Rows<'_> {
         }
     }
 
-    /// The rows that a search finds in these groups; returns how many there are.
+    /// Shows the rows of these groups that match a search. Returns their number.
     pub(crate) fn found(&self, ui: &mut Ui, search: &str, groups: &[Group], settings: &mut Settings) -> usize {
         let words = search.to_lowercase();
         let mut count = 0;
@@ -86,12 +86,13 @@ impl Rows<'_> {
     }
 }
 
-/// Groups of the technique.
+/// Returns the groups of the technique.
 pub(crate) fn technique_groups() -> impl Iterator<Item = Group> {
     Group::ALL.into_iter().filter(|group| group.is_technique())
 }
 
-/// Whether every word of a search, in lower case, is in the name, id, group or help of a parameter.
+/// Returns whether every word of a search, in lower case, occurs in the name, id, group or help of a
+/// parameter.
 fn matches(parameter: &Parameter, words: &str) -> bool {
     let texts = [parameter.label, parameter.id, parameter.group.label(), parameter.help].map(str::to_lowercase);
     words.split_whitespace().all(|word| texts.iter().any(|text| text.contains(word)))

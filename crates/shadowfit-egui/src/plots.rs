@@ -14,52 +14,52 @@ use crate::widgets::{caption, color, color_entry, color_line};
 /// Height of the plot, in points.
 const HEIGHT: f32 = 150.0;
 
-/// Room for the half of the last time below the plot, in points.
+/// Space for half of the last time label below the plot, in points.
 const RIGHT_MARGIN: f32 = 14.0;
 
-/// Least time that a plot shows, in seconds.
+/// Shortest time range of a plot, in seconds.
 const LEAST_SECONDS: f64 = 10.0;
 
-/// A frame at 60 Hz, in milliseconds: the line to stay below.
+/// Time of a frame at 60 Hz, in milliseconds, drawn as a line.
 const SMOOTH_MS: f64 = 1000.0 / 60.0;
 
-/// Some of the series, in one plot.
+/// A group of series in one plot.
 struct Choice {
     name: &'static str,
     help: &'static str,
     series: &'static [&'static str],
 }
 
-/// The plots, in the order that they are offered.
+/// The plots, in display order.
 const PLOTS: [Choice; 8] = [
     Choice {
         name: "Wrong pixels",
-        help: "Wrong pixels and their classes, in per cent of the judged ones.",
+        help: "Wrong pixels and their classes, in per cent of the judged pixels.",
         series: &["wrong", "false shadow", "false light", "hole", "edge"],
     },
     Choice {
         name: "Wrong pixels, A | B",
-        help: "Wrong pixels of both techniques, in per cent of the judged ones.",
+        help: "Wrong pixels of both techniques, in per cent of the judged pixels.",
         series: &["wrong", "wrong of B"],
     },
     Choice {
-        name: "Mean error",
-        help: "Mean difference of the light from the truth, in per cent of full light.",
-        series: &["mean error", "mean error of B"],
+        name: "Light error",
+        help: "Error of the sunlight, in per cent of the sunlight without shadows.",
+        series: &["light error", "light error of B"],
     },
     Choice {
         name: "Crawl",
-        help: "Pixels near edges that changed only because the maps moved, in per cent of those compared.",
+        help: "Pixels near edges that changed only because the maps changed, in per cent of the compared pixels.",
         series: &["crawl"],
     },
     Choice {
         name: "Pixels per texel",
-        help: "Screen pixels per texel that 95% of the picture stay below.",
+        help: "Screen pixels per texel, 95% quantile of the picture.",
         series: &["pixels per texel 95%"],
     },
     Choice {
         name: "Traced pixels",
-        help: "Pixels whose edges rays make, in per cent of those that face the light.",
+        help: "Pixels whose edges rays decide, in per cent of the pixels that face the light.",
         series: &["traced"],
     },
     Choice {
@@ -69,12 +69,12 @@ const PLOTS: [Choice; 8] = [
     },
     Choice {
         name: "Texels drawn",
-        help: "Texels of the maps that were drawn, kept ones left out.",
+        help: "Texels of the maps that were drawn, without kept texels.",
         series: &["texels drawn"],
     },
 ];
 
-/// Which plot is shown, and the figures.
+/// The chosen plot, and the figures.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Plots {
     pub(crate) history: History,
@@ -82,7 +82,7 @@ pub(crate) struct Plots {
 }
 
 impl Plots {
-    /// Choice, plot, legend with the last values, and buttons.
+    /// Shows the menu, the plot, a legend with the last values, and the buttons.
     pub(crate) fn show(&mut self, ui: &mut Ui, command: &mut Option<Command>) {
         let mut chosen = self.chosen;
         let list = ComboBox::from_id_salt("plot").width(ui.available_width()).selected_text(PLOTS[chosen].name);
@@ -119,21 +119,21 @@ impl Plots {
             }
         });
         if self.history.is_empty() {
-            caption(ui, "Nothing was measured yet.");
+            caption(ui, "Nothing measured yet.");
         }
     }
 
     fn buttons(&mut self, ui: &mut Ui, command: &mut Option<Command>) {
         ui.horizontal(|ui| {
             let (pause, help) = if self.history.is_paused {
-                ("Resume", "Goes on plotting.")
+                ("Resume", "Continues plotting.")
             } else {
-                ("Pause", "Stops plotting, to study what is there.")
+                ("Pause", "Stops plotting, so that you can study the plot.")
             };
             if ui.button(pause).on_hover_text(help).clicked() {
                 self.history.is_paused = !self.history.is_paused;
             }
-            if ui.button("Clear").on_hover_text("Forgets all that was plotted.").clicked() {
+            if ui.button("Clear").on_hover_text("Clears all plots.").clicked() {
                 self.history.clear();
             }
             let save = ui.add_enabled(!self.history.is_empty(), egui::Button::new("Save CSV"));
@@ -169,7 +169,7 @@ fn fixed_plot(ui: &Ui, name: &str, seconds: f64, top: f64, unit: &'static str) -
         .y_axis_formatter(move |mark, _| axis_value(mark.value, unit))
 }
 
-/// Lines of a grid from 0 to a range that may be negative: three to six of them, at round numbers.
+/// Returns the grid lines from 0 to a range that may be negative: three to six lines at round numbers.
 fn grid(range: f64) -> Vec<GridMark> {
     let step = round_step(range.abs());
     let count = (range.abs() / step) as i32;
@@ -177,24 +177,24 @@ fn grid(range: f64) -> Vec<GridMark> {
     (0..=count).map(mark).collect()
 }
 
-/// The least of 1, 2 and 5, times a power of ten, of which at most five fit in a range.
+/// Returns the least of 1, 2 and 5, times a power of ten, that fits at most five times into a range.
 fn round_step(range: f64) -> f64 {
     let power = 10.0_f64.powf((range / 5.0).log10().floor());
     let step = [1.0, 2.0, 5.0, 10.0].map(|step| step * power).into_iter().find(|step| range / step <= 5.0);
     step.unwrap_or(range)
 }
 
-/// A time at the axis, in seconds before now.
+/// Returns the label of a time on the axis, in seconds before now.
 fn time_value(time: f64, range: f64) -> String {
     match time {
         0.0 => "now".to_owned(),
-        // The first one would stand in the corner of the other axis.
+        // The first label would collide with the corner of the other axis.
         _ if time < -0.97 * range => String::new(),
         _ => format!("{time:.0} s"),
     }
 }
 
-/// What stands beside the pointer: value and time, and the name of the series whose point is near.
+/// Returns the text beside the pointer: value and time, and the name of the nearest series.
 fn hovered(hover: &HoverPosition<'_>, unit: &str) -> String {
     let (name, position) = match hover {
         HoverPosition::NearDataPoint { plot_name, position, .. } => (format!("{plot_name}\n"), position),
@@ -203,7 +203,7 @@ fn hovered(hover: &HoverPosition<'_>, unit: &str) -> String {
     format!("{name}{}\n{:.1} s ago", with_unit(position.y, unit), -position.x)
 }
 
-/// A value with its unit, with two decimals or as a brief count.
+/// Returns a value with its unit, with two decimals or as a brief count.
 fn with_unit(value: f64, unit: &str) -> String {
     match unit {
         "texels" => brief_count(value),
@@ -211,7 +211,7 @@ fn with_unit(value: f64, unit: &str) -> String {
     }
 }
 
-/// A value at an axis, with its unit.
+/// Returns the label of a value on the axis, with its unit.
 fn axis_value(value: f64, unit: &str) -> String {
     match unit {
         "texels" => brief_count(value),
@@ -219,13 +219,13 @@ fn axis_value(value: f64, unit: &str) -> String {
     }
 }
 
-/// A round number without the dust of its binary fraction.
+/// Returns a round number without the rounding digits of its binary fraction.
 fn short_number(value: f64) -> String {
     let text = format!("{value:.3}");
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
-/// The index of a series, and its colour in a plot.
+/// Returns the index of a series, and its colour in a plot.
 fn line(ui: &Ui, name: &str) -> (usize, Color32) {
     let palette = Palette::of(ui);
     let index = SERIES.iter().position(|series| series.name == name).unwrap_or(0);
@@ -235,7 +235,7 @@ fn line(ui: &Ui, name: &str) -> (usize, Color32) {
         "hole" => color(ERROR_COLORS[2]),
         "edge" => color(ERROR_COLORS[3]),
         "wrong" | "frame" => palette.strong,
-        "wrong of B" | "mean error of B" | "scene pass" => palette.second,
+        "wrong of B" | "light error of B" | "scene pass" => palette.second,
         "judging" => color(MAP_TINTS[4]),
         _ => palette.accent,
     };

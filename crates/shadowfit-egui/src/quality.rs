@@ -1,4 +1,4 @@
-//! How wrong the picture is, against rays: of one technique, or of two beside each other.
+//! The share of wrong pixels, judged against rays, for one technique or two.
 
 use egui::text::LayoutJob;
 use egui::{
@@ -12,42 +12,43 @@ use crate::theme::{Palette, figure_font};
 use crate::units::{percent, percent_number};
 use crate::widgets::{ValueRow, caption, card, title};
 
-/// From this age on, in seconds, a judgement says how old it is.
+/// Age from which the card shows it, in seconds.
 const OLD: f32 = 0.15;
 
-/// What is said of the whole.
-const WRONG_HELP: &str = "Pixels whose verdict, lit or not, differs from that of rays, in per cent of those that face the \
-                          light within the shadow distance. Edges count.";
+/// Help of the total.
+const WRONG_HELP: &str = "Pixels whose verdict, lit or not, differs from the rays, in per cent of the pixels that face \
+                          the light within the shadow distance. Edges count.";
 
-/// A figure that is no class: name, help, value.
+/// A figure other than a class: name, help, value.
 type Figure = (&'static str, &'static str, fn(&JudgedFigures) -> Option<String>);
 
 /// The figures below the classes.
 const FIGURES: [Figure; 3] = [
     (
-        "Mean error",
-        "Mean difference between the filtered share of the light and the truth, in per cent of full light.",
-        |judged| Some(percent(judged.mean_error)),
+        "Light error",
+        "Error of the sunlight, in per cent of the sunlight without shadows. Includes soft edges. Surfaces at grazing \
+         light weigh as little as they show.",
+        |judged| Some(percent(judged.light_error)),
     ),
     (
         "Crawl",
-        "Pixels near edges whose verdict changed only because the maps moved, in per cent of those compared: edges that \
-         crawl while the camera flies.",
+        "Pixels near edges whose verdict changed only because the maps changed, in per cent of the compared pixels: \
+         edges that crawl while the camera flies.",
         |judged| judged.crawl.map(percent),
     ),
     (
         "Pixels per texel 99%",
-        "Screen pixels that a texel covers, along its worse axis, in the worst hundredth of the picture (99% quantile). \
-         Above 1, texels can be seen.",
+        "Screen pixels per texel, along the texel's worse axis, in the worst hundredth of the picture (99% quantile). \
+         Above 1, texels are visible.",
         |judged| judged.pixels_per_texel.map(|[_, _, worst]| format!("{worst:.2}")),
     ),
 ];
 
-/// The card; `unjudged` is why it can have no figures.
+/// Shows the card. `unjudged` is the reason why there can be no figures.
 pub(crate) fn show(ui: &mut Ui, figures: &Figures, is_compared: bool, unjudged: Option<&str>) {
     card(ui, None, |ui| {
         ui.horizontal(|ui| {
-            title(ui, "Quality").on_hover_text("The picture against rays, which find every shadow exactly.");
+            title(ui, "Quality").on_hover_text("Comparison of the picture with rays, which find every shadow exactly.");
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| age(ui, figures.judged.as_ref()));
         });
         match (&figures.judged, &figures.judged_other) {
@@ -97,7 +98,7 @@ fn one(ui: &mut Ui, judged: &JudgedFigures) {
 fn two(ui: &mut Ui, a: &JudgedFigures, b: Option<&JudgedFigures>) {
     let palette = Palette::of(ui);
     let sides = [("A", Some(a), palette.accent), ("B", b, palette.second)];
-    // Bars of one scale.
+    // Both bars have the same scale.
     let full = b.map_or(a.wrong, |b| b.wrong.max(a.wrong));
     ui.columns_const(|columns: &mut [Ui; 2]| {
         for (ui, (name, judged, color)) in columns.iter_mut().zip(sides) {
@@ -125,7 +126,7 @@ fn two(ui: &mut Ui, a: &JudgedFigures, b: Option<&JudgedFigures>) {
     }
 }
 
-/// A line of a table, close below the last one.
+/// Shows a row of a table, close to the previous one.
 fn row(ui: &mut Ui, fill: Option<Color32>, name: &str, help: &str, values: &[Option<String>]) {
     /// Width of a column of values, in points.
     const WIDTH: f32 = 72.0;
@@ -133,12 +134,12 @@ fn row(ui: &mut Ui, fill: Option<Color32>, name: &str, help: &str, values: &[Opt
     ValueRow { fill, name, values, width: WIDTH }.show(ui).on_hover_text(help);
 }
 
-/// A value, or a dash where it was not measured.
+/// Returns a value, or a dash if it was not measured.
 pub(crate) fn known(value: Option<String>) -> RichText {
     value.map_or_else(|| RichText::new("—").weak(), |value| RichText::new(value).strong())
 }
 
-/// The share of wrong pixels, large.
+/// Shows the share of wrong pixels in large digits.
 fn wrong(ui: &mut Ui, judged: &JudgedFigures, color: Color32) -> Response {
     let mut job = LayoutJob::default();
     let format = |font_id, color| TextFormat { font_id, color, valign: Align::BOTTOM, ..TextFormat::default() };
@@ -148,7 +149,7 @@ fn wrong(ui: &mut Ui, judged: &JudgedFigures, color: Color32) -> Response {
     ui.label(job).on_hover_text(WRONG_HELP)
 }
 
-/// The classes of wrong pixels beside each other, `full` per cent wide.
+/// Shows the classes of wrong pixels beside each other. The full width means `full` per cent.
 fn bar(ui: &mut Ui, judged: &JudgedFigures, full: f32) -> Response {
     let (rect, response) = ui.allocate_exact_size(Vec2::new(ui.available_width(), 8.0), Sense::hover());
     let shares = shares(judged);

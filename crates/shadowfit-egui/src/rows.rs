@@ -1,5 +1,5 @@
-//! One control per parameter: label, slider or list or check box, unit, and a reset button when the
-//! value is not the default.
+//! One control per parameter: label, slider, list or check box, unit, and a reset button if the value differs
+//! from the default.
 
 mod label;
 mod side;
@@ -21,14 +21,14 @@ const MOST_DECIMALS: usize = 8;
 /// Id of the parameter that is shown as a row of buttons, one for each map.
 const INSET_MAP: &str = "view.inset_map";
 
-/// A parameter, and what its row says.
+/// A parameter and the texts of its row.
 struct Row<'a> {
     parameter: &'a Parameter,
-    /// What it does, its range and its default.
+    /// Effect, range and default.
     help: String,
-    /// Why it has no effect.
+    /// Reason why it has no effect.
     reason: Option<&'static str>,
-    /// Its group, where the row stands outside of it and would not be understood.
+    /// Name of its group, if the row is shown outside of the group and would be ambiguous.
     context: &'static str,
 }
 
@@ -45,13 +45,13 @@ impl Row<'_> {
     }
 }
 
-/// Whether a parameter gets a row under these settings: not one of another choice of splits, and none of a map
-/// that is not there.
+/// Returns whether a parameter gets a row under these settings. Parameters of another choice and of missing
+/// maps get none.
 pub(crate) fn is_shown(parameter: &Parameter, settings: &Settings) -> bool {
     parameter.is_present(settings) && !(parameter.is_of_choice() && (parameter.inert)(settings).is_some())
 }
 
-/// The rows of parameters that are shown, each of which may change what the next ones are.
+/// Shows the rows of parameters. Each row may change which of the next ones exist.
 pub(crate) fn show_all(
     ui: &mut Ui,
     parameters: impl IntoIterator<Item = &'static Parameter>,
@@ -65,8 +65,8 @@ pub(crate) fn show_all(
     }
 }
 
-/// The row of a parameter. A double click on its label resets it, as the button does; a number that
-/// is NaN, which no slider can show, resets itself.
+/// Shows the row of a parameter. A double click on its label resets it, like the button. A NaN, which no
+/// slider can show, resets itself.
 pub(crate) fn show(
     ui: &mut Ui,
     parameter: &Parameter,
@@ -97,7 +97,7 @@ pub(crate) fn show(
     }
 }
 
-/// Label and control, for a number that need not be there its check box; returns the label.
+/// Shows the label and the control; for an optional number its check box. Returns the label.
 fn first_line(ui: &mut Ui, row: &Row<'_>, settings: &mut Settings) -> Response {
     let label = row.label(ui);
     let parameter = row.parameter;
@@ -132,7 +132,7 @@ fn first_line(ui: &mut Ui, row: &Row<'_>, settings: &mut Settings) -> Response {
     label
 }
 
-/// Check box of a number that need not be there.
+/// Shows the check box of an optional number.
 fn unset_control(ui: &mut Ui, row: &Row<'_>, unset: &Unset, mut is_unset: bool, settings: &mut Settings) {
     let (parameter, option) = (row.parameter, unset.option);
     let response = ui.add(Checkbox::new(&mut is_unset, option.label)).on_hover_text(option.help);
@@ -147,15 +147,15 @@ fn unset_control(ui: &mut Ui, row: &Row<'_>, unset: &Unset, mut is_unset: bool, 
     row.explain(response);
 }
 
-/// Slider and field of a number that need not be there, while it is.
+/// Shows slider and field of an optional number that is set.
 fn second_line(ui: &mut Ui, row: &Row<'_>, number: &Number, value: f64, settings: &mut Settings, label: &Response) {
     ui.horizontal(|ui| {
         ui.add_space(ui.spacing().icon_width);
         if let Some(value) = number_control(ui, row, number, value, label) {
             let mut next = *settings;
             row.parameter.set(&mut next, Value::Number(value));
-            // A value that means none, such as a height equal to the width, removes the slider, but not while it is
-            // being dragged.
+            // A value that means unset, such as a height equal to the width, removes the slider, but not
+            // during a drag.
             if row.parameter.number(&next).is_some() || !ui.input(|input| input.pointer.any_down()) {
                 *settings = next;
             }
@@ -163,7 +163,7 @@ fn second_line(ui: &mut Ui, row: &Row<'_>, number: &Number, value: f64, settings
     });
 }
 
-/// Turns a number on; where its initial value means none, at half of that.
+/// Sets an optional number to its initial value, or to half of that if the initial value means unset.
 fn begin(parameter: &Parameter, unset: &Unset, settings: &mut Settings) {
     parameter.set(settings, Value::Number(unset.initial));
     if parameter.number(settings).is_none() {
@@ -171,7 +171,7 @@ fn begin(parameter: &Parameter, unset: &Unset, settings: &mut Settings) {
     }
 }
 
-/// Slider and field, and for the sides of maps a list of the powers of two; returns a new value.
+/// Shows slider and field, and for the sides of maps a list of the powers of two. Returns a new value.
 fn number_control(ui: &mut Ui, row: &Row<'_>, scale: &Number, mut value: f64, label: &Response) -> Option<f64> {
     let gap = ui.spacing().item_spacing.x;
     let is_side = side::is_side(row.parameter, scale.decimals);
@@ -180,14 +180,14 @@ fn number_control(ui: &mut Ui, row: &Row<'_>, scale: &Number, mut value: f64, la
     ui.spacing_mut().slider_width = (ui.available_width() - taken).max(24.0);
     ui.spacing_mut().interact_size.x = VALUE_WIDTH;
     let mut slider = Slider::new(&mut value, scale.min..=scale.max)
-        // The setting stays as it is until a person turns it.
+        // The setting stays out of range until the user edits it.
         .clamping(SliderClamping::Edits)
         .logarithmic(scale.logarithmic)
-        // A typed number counts when it is complete: 1024 passes through 1, 10 and 102.
+        // A typed number is applied when complete, since typing 1024 passes through 1, 10 and 102.
         .update_while_editing(false);
     slider = match scale.decimals {
         0 => slider.integer(),
-        // An edit may change the magnitude, so that the text alone is rounded to it.
+        // An edit may change the magnitude, so only the text is rounded to it.
         _ if scale.logarithmic => slider.max_decimals(MOST_DECIMALS).custom_formatter(|value, _| text(scale, value)),
         decimals => slider.fixed_decimals(decimals),
     };
@@ -212,7 +212,7 @@ fn text(number: &Number, value: f64) -> String {
     format!("{value:.decimals$}")
 }
 
-/// List of options; returns the index of another one.
+/// Shows a list of options. Returns the index of a newly chosen one.
 fn choice_control(
     ui: &mut Ui,
     row: &Row<'_>,
@@ -237,7 +237,7 @@ fn choice_control(
     chosen
 }
 
-/// Check box; returns whether it was turned on or off.
+/// Shows a check box. Returns the new state if it was changed.
 fn toggle_control(ui: &mut Ui, row: &Row<'_>, mut on: bool) -> Option<bool> {
     let response = ui.add(Checkbox::without_text(&mut on));
     let changed = response.changed();
@@ -250,7 +250,7 @@ fn is_nan(parameter: &Parameter, settings: &Settings) -> bool {
     parameter.number(settings).is_some_and(f64::is_nan)
 }
 
-/// What the parameter does, its range and its default.
+/// Returns the effect of a parameter, its range and its default.
 fn help(parameter: &Parameter, defaults: &Settings) -> String {
     let unit = if parameter.unit.is_empty() { String::new() } else { format!(" {}", parameter.unit) };
     let default = parameter.get(defaults);

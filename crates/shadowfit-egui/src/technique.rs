@@ -1,4 +1,4 @@
-//! The menu of techniques by name: the presets, and the one that the host opened.
+//! The menu of techniques by name: the presets, and the technique that the host opened.
 
 use egui::text::LayoutJob;
 use egui::{Button, ComboBox, Key, RectAlign, Response, TextEdit, TextFormat, TextStyle, Tooltip, Ui, Vec2};
@@ -8,30 +8,30 @@ use crate::accessibility::rename;
 use crate::widgets::{Icon, icon_button};
 use crate::{Command, Toggle, UserPreset};
 
-/// What the menu does.
-const HELP: &str = "Sets everything from Fit to Bias as a technique by name has it, and keeps shadow distance, \
-                    caster extension and resolution as they are.";
+/// Help of the menu.
+const HELP: &str = "Applies a named technique: sets all groups from Fit to Bias. Shadow distance, caster extension and \
+                    resolution stay unchanged.";
 
-/// Width of the open menu, in points: a summary takes one line or two.
+/// Width of the open menu, in points: a summary takes one or two lines.
 const WIDTH: f32 = 320.0;
 
-/// Most of the screen's height that the open menu takes.
+/// Greatest share of the screen's height for the open menu.
 const HEIGHT: f32 = 0.6;
 
-/// Most characters of the name of a saved technique.
+/// Greatest number of characters in the name of a saved technique.
 const MAX_NAME: usize = 40;
 
-/// What a technique is called that was not chosen from the menu.
+/// Name of a technique that was not chosen from the menu.
 const CUSTOM: &str = "custom";
 
-/// The names that were chosen last, of A and of B, and the technique that the host opened.
+/// The names last chosen for A and B, and the technique that the host opened.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Menu {
     chosen: [String; 2],
-    /// Which of both was shown last.
+    /// Side shown last.
     side: usize,
     opened: Option<(String, Technique)>,
-    /// The name that a technique is about to be saved under, while the field for it is shown.
+    /// Name under which the technique is to be saved, while its field is shown.
     name: Option<String>,
 }
 
@@ -41,7 +41,7 @@ struct Entry<'a> {
     summary: &'a str,
     advice: &'a str,
     technique: Technique,
-    /// Whether a person saved it, and can delete it.
+    /// Whether the user saved it, and can delete it.
     is_saved: bool,
 }
 
@@ -49,13 +49,13 @@ impl Menu {
     pub(crate) fn open(&mut self, name: String, technique: &Technique) {
         self.chosen[self.side].clone_from(&name);
         let is_it = |preset: &&shadowfit::Preset| of_scene(&preset.technique(), technique) == *technique;
-        // A preset is in the menu already.
+        // The menu already has this preset.
         if !PRESETS.iter().filter(is_it).any(|preset| preset.name == name) {
             self.opened = Some((name, *technique));
         }
     }
 
-    /// Swaps or copies the names as a command is about to do with the techniques.
+    /// Swaps or copies the names, as the command will do with the techniques.
     pub(crate) fn follow(&mut self, command: &Command, edits_other: bool) {
         match command {
             Command::SwapSides => self.chosen.swap(0, 1),
@@ -76,7 +76,7 @@ impl Menu {
         let opened = self.opened.iter().map(|(name, technique)| Entry {
             name,
             summary: "as it was opened",
-            advice: "Goes back to the technique that was opened.",
+            advice: "Restores the technique as it was opened.",
             technique: *technique,
             is_saved: false,
         });
@@ -97,7 +97,7 @@ impl Menu {
         opened.chain(saved).chain(presets)
     }
 
-    /// The menu, as a line of its own; with `saved`, the techniques saved by name, a button saves this one too.
+    /// Shows the menu in a line. With `saved`, the techniques saved by name, a button saves the current one.
     pub(crate) fn show(
         &mut self,
         ui: &mut Ui,
@@ -127,7 +127,7 @@ impl Menu {
             let list = list.show_ui(ui, |ui| chosen = self.list(ui, presets, name.as_deref(), command));
             rename(ui, &list.response, "Technique".to_owned());
             list.response.on_hover_text(help);
-            let help = "Saves the technique under a name of its own.";
+            let help = "Saves the technique under a name.";
             if saved.is_some() && icon_button(ui, Icon::Save, "Save the technique", help).clicked() {
                 self.name = if self.name.is_some() { None } else { Some(String::new()) };
             }
@@ -139,7 +139,7 @@ impl Menu {
         }
     }
 
-    /// The lines of the menu. Returns the technique that was chosen, with its name.
+    /// Shows the lines of the menu. Returns the chosen technique with its name.
     fn list(
         &self,
         ui: &mut Ui,
@@ -159,7 +159,7 @@ impl Menu {
         chosen
     }
 
-    /// The field for the name that the technique is saved under, while it is asked for.
+    /// Shows the field for the name of the technique to save, if the user has asked for it.
     fn name_field(&mut self, ui: &mut Ui, command: &mut Option<Command>) {
         let Some(name) = &mut self.name else { return };
         let mut is_done = false;
@@ -182,21 +182,22 @@ impl Menu {
         }
     }
 
-    /// What a technique is called that is not in the menu.
+    /// Returns the name of a technique that is not in the menu.
     fn changed(&self, side: usize) -> String {
         let chosen = &self.chosen[side];
         format!("{}, changed", if chosen.is_empty() { CUSTOM } else { chosen })
     }
 }
 
-/// A technique with the shadow distance, the caster extension and the resolution of another one:
-/// those depend on the scene and the machine.
+/// Returns a technique with the shadow distance, the caster extension and the resolution of another one,
+/// since they depend on the scene and the machine.
 fn of_scene(technique: &Technique, other: &Technique) -> Technique {
     let [width, height] = other.fit.resolution.to_array();
     technique.with_lengths_of(other).with_resolution(width, height)
 }
 
-/// A line of the menu, with a button that deletes it where a person saved it; returns whether it was chosen.
+/// Shows a line of the menu, with a delete button if the user saved the technique. Returns whether it was
+/// chosen.
 fn line(ui: &mut Ui, entry: &Entry<'_>, is_selected: bool, command: &mut Option<Command>) -> bool {
     if !entry.is_saved {
         return option(ui, entry, is_selected, ui.available_width()).clicked();
@@ -213,7 +214,7 @@ fn line(ui: &mut Ui, entry: &Entry<'_>, is_selected: bool, command: &mut Option<
     .inner
 }
 
-/// The name, and below it in a few words what it is.
+/// Shows the name, and a short summary below it.
 fn option(ui: &mut Ui, entry: &Entry<'_>, is_selected: bool, width: f32) -> Response {
     let mut text = LayoutJob::default();
     let format =
@@ -229,7 +230,7 @@ fn option(ui: &mut Ui, entry: &Entry<'_>, is_selected: bool, width: f32) -> Resp
     text.append(entry.summary, 0.0, format(TextStyle::Small, weak));
     ui.set_max_width(width);
     let response = ui.add(Button::selectable(is_selected, text).wrap().min_size(Vec2::new(width, 0.0)));
-    // Beside the line: below it, it would lie on the next ones.
+    // Beside the line, since below it the tooltip would cover the next lines.
     let mut tooltip = Tooltip::for_enabled(&response);
     tooltip.popup = tooltip.popup.align(RectAlign::LEFT_START);
     tooltip.show(|ui| ui.label(entry.advice));

@@ -1,6 +1,6 @@
 //! The look of the panel, dark and light: type, spacing, corners and colours.
 //!
-//! The panel works in any egui style; this is the one that it was drawn for.
+//! The panel works in any egui style. This style is its own.
 
 mod palette;
 
@@ -19,10 +19,10 @@ pub(crate) use palette::{Palette, contrast, readable};
 const TYPE_SCALE: [(TextStyle, f32); 4] =
     [(TextStyle::Small, 11.5), (TextStyle::Body, 13.5), (TextStyle::Button, 13.5), (TextStyle::Heading, 17.0)];
 
-/// Size of text in which digits are equally wide, in points.
+/// Size of monospaced text, in points.
 const MONOSPACE: f32 = 12.5;
 
-/// Height of what can be pressed with a mouse, and with a finger, in points.
+/// Heights of controls for a mouse and for a finger, in points.
 const ROW: f32 = 22.0;
 const FINGER: f32 = 36.0;
 
@@ -32,8 +32,8 @@ const CONTROL_RADIUS: u8 = 5;
 /// Corner radius of cards, menus and windows, in points.
 pub(crate) const CARD_RADIUS: u8 = 8;
 
-/// Gives the whole application the look of the panel, both dark and light, and shows the one of `theme`: an
-/// [`egui::Theme`], or [`ThemePreference::System`] for the one that the system prefers.
+/// Gives the whole application the look of the panel, both dark and light, and shows `theme`: an
+/// [`egui::Theme`], or [`ThemePreference::System`] for the system's theme.
 ///
 /// [`Context::set_theme`] changes between them later.
 pub fn apply_theme(ctx: &Context, theme: impl Into<ThemePreference>) {
@@ -48,16 +48,16 @@ pub fn apply_theme(ctx: &Context, theme: impl Into<ThemePreference>) {
     ctx.set_theme(theme);
 }
 
-/// Makes what can be pressed as high as a finger needs, or as low as it is for a mouse: for touch screens and narrow
-/// windows. It changes both themes; after [`apply_theme`] the sizes are those for a mouse.
+/// Makes controls high enough for fingers, for touch screens and narrow windows, or resets them for a mouse.
+/// It changes both themes. [`apply_theme`] sets the sizes for a mouse.
 pub fn size_for_fingers(ctx: &Context, is_touched: bool) {
     let height = if is_touched { FINGER } else { ROW };
     ctx.all_styles_mut(|style| style.spacing.interact_size.y = height);
 }
 
-/// Lets text have arrows, as in "0 → 1 texel": egui's font for text has none, that for code has them.
+/// Adds arrows to text, as in "0 → 1 texel". egui's font for text lacks them, its font for code has them.
 fn add_arrows(ctx: &Context) {
-    /// Name of egui's font for code, whose license lets it be used so.
+    /// Name of egui's font for code, whose license allows this use.
     const CODE_FONT: &str = "Hack";
     if let Some(font) = FontDefinitions::default().font_data.get(CODE_FONT) {
         let after_all = InsertFontFamily { family: FontFamily::Proportional, priority: FontPriority::Lowest };
@@ -65,13 +65,13 @@ fn add_arrows(ctx: &Context) {
     }
 }
 
-/// Whether text can have arrows, as it can with [`apply_theme`].
+/// Returns whether text can have arrows, as it can after [`apply_theme`].
 pub(crate) fn has_arrows(ui: &Ui) -> bool {
     let font = TextStyle::Body.resolve(ui.style());
     ui.ctx().fonts_mut(|fonts| fonts.has_glyph(&font, '→'))
 }
 
-/// Sizes and distances, the same in both themes.
+/// Sets sizes and distances, which both themes share.
 fn measures(style: &mut Style) {
     for (text, size) in TYPE_SCALE {
         style.text_styles.insert(text, FontId::new(size, FontFamily::Proportional));
@@ -116,7 +116,8 @@ fn visuals(theme: Theme, palette: &Palette) -> Visuals {
     visuals
 }
 
-/// How widgets look at rest, pointed at, held or focused, and open. What is focused has a ring in the accent colour.
+/// Returns the look of widgets at rest, hovered, pressed or focused, and open. A focused widget has a ring in
+/// the accent colour.
 fn widgets(palette: &Palette) -> Widgets {
     let widget = |fill, line: Stroke, text: Color32| WidgetVisuals {
         bg_fill: fill,
@@ -136,7 +137,7 @@ fn widgets(palette: &Palette) -> Widgets {
     }
 }
 
-/// The font of a figure that stands out: twice as high as text.
+/// Returns the font of a prominent figure, twice as high as text.
 pub(crate) fn figure_font(ui: &Ui) -> FontId {
     FontId::proportional(2.0 * TextStyle::Body.resolve(ui.style()).size)
 }

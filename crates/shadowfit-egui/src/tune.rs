@@ -8,10 +8,10 @@ use crate::units::percent;
 use crate::widgets::{at_least, caption, card, main_button, title};
 use crate::{Command, Tune};
 
-const HELP: &str = "Tries biases, filters and fits on this view, judges each against rays, and keeps what has the least \
-                    error. Nothing changes until you apply it.";
+const HELP: &str = "Tries biases, filters and fits on this view, judges each against rays, and keeps the settings with \
+                    the least error. Nothing changes until you apply them.";
 
-/// The card.
+/// Shows the card.
 pub(crate) fn show(ui: &mut Ui, tune: &Tune<'_>, command: &mut Option<Command>) {
     let palette = Palette::of(ui);
     let accent = match tune {
@@ -31,7 +31,7 @@ pub(crate) fn show(ui: &mut Ui, tune: &Tune<'_>, command: &mut Option<Command>) 
             } else {
                 caption(ui, what);
             }
-            if ui.button("Cancel").on_hover_text("Ends the search; what it found so far counts.").clicked() {
+            if ui.button("Cancel").on_hover_text("Ends the search and keeps its best result.").clicked() {
                 *command = Some(Command::CancelTune);
             }
         }
@@ -55,7 +55,7 @@ fn idle(ui: &mut Ui, command: &mut Option<Command>) {
     });
 }
 
-/// The progress bar of a search. `share` is done, 0..=1.
+/// Shows the progress bar of a search. `share` is the finished share, 0..=1.
 fn progress(ui: &mut Ui, share: f32) {
     let bar = ProgressBar::new(share).desired_height(8.0).fill(Palette::of(ui).accent_fill);
     let response = ui.add(bar);
@@ -79,7 +79,7 @@ fn done(
     };
     ui.label(RichText::new(text).color(palette.success));
     ui.label(RichText::new(format!("Wrong pixels {}", from_to(ui, before.wrong, after.wrong))).strong());
-    caption(ui, &format!("Mean error {}", from_to(ui, before.mean_error, after.mean_error)));
+    caption(ui, &format!("Light error {}", from_to(ui, before.light_error, after.light_error)));
     crate::artefact_card::changes(ui, changes);
     ui.add_space(2.0);
     if is_better && !is_applied {
@@ -113,7 +113,7 @@ fn start(ui: &mut Ui, text: &str, command: &mut Option<Command>) {
 }
 
 fn close(ui: &mut Ui, text: &str, command: &mut Option<Command>) {
-    if wide(ui, text).on_hover_text("Forgets what the search found; the settings stay.").clicked() {
+    if wide(ui, text).on_hover_text("Discards the result of the search; the settings stay.").clicked() {
         *command = Some(Command::DiscardTune);
     }
 }

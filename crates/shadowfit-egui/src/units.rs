@@ -1,6 +1,6 @@
-//! Lengths and counts as people read them.
+//! Lengths and counts as text for people.
 
-/// Width and height, in the unit that fits the greater one.
+/// Formats width and height in the unit that suits the greater one.
 pub(crate) fn size([u, v]: [f32; 2]) -> String {
     let (unit, scale) = unit(u.max(v));
     format!("{} × {} {unit}", short(u * scale), short(v * scale))
@@ -11,7 +11,7 @@ pub(crate) fn length(metres: f32) -> String {
     format!("{} {unit}", short(metres * scale))
 }
 
-/// A number with three digits, or two decimals where it is below 1.
+/// Formats a number with three digits, or with two decimals below 1.
 pub(crate) fn short(value: f32) -> String {
     let decimals = match value.abs() {
         v if v >= 99.95 => 0,
@@ -21,12 +21,12 @@ pub(crate) fn short(value: f32) -> String {
     format!("{value:.decimals$}")
 }
 
-/// A share in per cent, with two digits where it is below 10.
+/// Formats a share in per cent, with two decimals below 10.
 pub(crate) fn percent(share: f32) -> String {
     format!("{}\u{a0}%", percent_number(share))
 }
 
-/// The number of a share in per cent, without its sign.
+/// Formats the number of a share in per cent, without its sign.
 pub(crate) fn percent_number(share: f32) -> String {
     match share {
         s if s > 0.0 && s < 0.005 => "<\u{2009}0.01".to_owned(),
@@ -35,7 +35,7 @@ pub(crate) fn percent_number(share: f32) -> String {
     }
 }
 
-/// A count in thousands, millions or milliards of its own unit, with three digits.
+/// Formats a count in thousands, millions or billions, with three digits.
 pub(crate) fn brief_count(count: f64) -> String {
     let (scale, suffix) = match count.abs() {
         c if c >= 999.5e6 => (1e-9, "\u{a0}G"),
@@ -46,7 +46,7 @@ pub(crate) fn brief_count(count: f64) -> String {
     format!("{}{suffix}", short((count * scale) as f32))
 }
 
-/// The unit in which a length reads best, and how many of it are a metre.
+/// Returns the unit that suits a length, and the number of these units in a metre.
 fn unit(metres: f32) -> (&'static str, f32) {
     match metres.abs() {
         m if m >= 1000.0 => ("km", 1e-3),
@@ -58,7 +58,7 @@ fn unit(metres: f32) -> (&'static str, f32) {
     }
 }
 
-/// A count with its digits in groups of three.
+/// Formats a count with its digits in groups of three.
 pub(crate) fn grouped(count: u64) -> String {
     let digits = count.to_string();
     let mut text = String::with_capacity(digits.len() + digits.len() / 3);

@@ -1,4 +1,4 @@
-//! The bar of views, for over the picture.
+//! The bar of views above the picture.
 
 use egui::containers::menu::MenuButton;
 use egui::{Button, Response, RichText, Ui};
@@ -9,10 +9,10 @@ use crate::accessibility::rename;
 use crate::command::VIEW_KEYS;
 use crate::theme::Palette;
 
-/// A button for each view, with its name and its key, 1..=9 and 0 in the order of [`ViewMode::ALL`]; the chosen one is
-/// filled. It wraps where the line is too narrow. `no_compute` is why the device has no compute shaders, if it has none:
-/// the views that take them are grey then, and say so. Returns the response of the whole bar, which is
-/// [changed](Response::changed) when another view was chosen.
+/// Shows a button for each view, with its name and its key, 1..=9 and 0 in the order of [`ViewMode::ALL`].
+/// The chosen view is filled, and the bar wraps if it is too wide. If the device has no compute shaders, pass
+/// the reason as `no_compute`, which disables the views that need them. Returns the response of the whole
+/// bar, which is [changed](Response::changed) when another view was chosen.
 pub fn view_bar(ui: &mut Ui, view: &mut ViewSettings, no_compute: Option<&str>) -> Response {
     let before = view.mode;
     let mut bar = ui
@@ -33,8 +33,9 @@ pub fn view_bar(ui: &mut Ui, view: &mut ViewSettings, no_compute: Option<&str>) 
     bar
 }
 
-/// The views as a menu that shows the chosen one, for where [`view_bar`] takes too much room; `no_compute` as there.
-/// Returns the response of its button, which is [changed](Response::changed) when another view was chosen.
+/// Shows the views as a menu, for places that are too small for [`view_bar`]; `no_compute` is the same as
+/// there. Returns the response of its button, which is [changed](Response::changed) when another view was
+/// chosen.
 pub fn view_menu(ui: &mut Ui, view: &mut ViewSettings, no_compute: Option<&str>) -> Response {
     let before = view.mode;
     let (mut response, _) = MenuButton::new(view_option(view.mode).label).ui(ui, |ui| {
@@ -56,7 +57,7 @@ pub fn view_menu(ui: &mut Ui, view: &mut ViewSettings, no_compute: Option<&str>)
     response
 }
 
-/// A button of a view. `refused` is the reason why the view cannot be chosen, if it cannot.
+/// Shows the button of a view. `refused` is the reason why the view cannot be chosen, if there is one.
 fn button(ui: &mut Ui, option: &ChoiceOption, key: &str, refused: Option<&str>, is_selected: bool) -> Response {
     let palette = Palette::of(ui);
     let weak = if is_selected { palette.on_accent } else { palette.weak };

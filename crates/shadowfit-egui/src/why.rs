@@ -1,4 +1,4 @@
-//! The card that says why a pixel is as it is.
+//! The card that explains a pixel.
 
 use egui::{Align2, Area, Context, Frame, Grid, Id, Order, Pos2, Rect, RichText, Ui, Vec2};
 
@@ -12,34 +12,35 @@ const WIDTH: f32 = 268.0;
 /// Distance of the card from the pointer, in points.
 const GAP: f32 = 16.0;
 
-/// Why a pixel is lit or not, and what was read for it. `None` means not known, and gets no line.
+/// The reason why a pixel is lit or not, and the values that it read. `None` means not known, and gets no
+/// line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WhyCard<'a> {
-    /// How it compares with rays; `None` where it was not judged.
+    /// Verdict compared with rays; `None` if the pixel was not judged.
     pub class: Option<PixelClass>,
-    /// Why it is so, in a sentence or two.
+    /// Reason for the verdict, in a sentence or two.
     pub reason: &'a str,
-    /// Why it reads this map, in a sentence.
+    /// Reason for the choice of the map, in a sentence.
     pub map_reason: &'a str,
     /// World position of the surface, in metres.
     pub position: Option<[f64; 3]>,
-    /// Index of the map that it reads, 0..8.
+    /// Index of the map that the pixel reads, 0..8.
     pub map: Option<u32>,
-    /// Column and row of the texel that it reads.
+    /// Column and row of the texel that the pixel reads.
     pub texel: Option<[u32; 2]>,
     /// Depth in that texel.
     pub stored_depth: Option<f32>,
-    /// Depth that it is compared with, bias included.
+    /// Depth that the stored depth is compared with, bias included.
     pub compared_depth: Option<f32>,
-    /// Screen pixels that the texel covers, along its worse axis.
+    /// Screen pixels per texel, along the texel's worse axis.
     pub pixels_per_texel: Option<f32>,
 }
 
 impl WhyCard<'_> {
-    /// The lines of the list: name and value.
+    /// Returns the lines of the list: name and value.
     fn lines(&self) -> impl Iterator<Item = (&'static str, String)> {
         let position = self.position.map(|[x, y, z]| {
-            // A hundredth, or three digits in the model of a small thing.
+            // Two decimals, or three digits in small models.
             let largest = x.abs().max(y.abs()).max(z.abs()).max(1e-6);
             let decimals = (2.0 - largest.log10().floor()).clamp(2.0, 8.0) as usize;
             format!("{x:.decimals$}, {y:.decimals$}, {z:.decimals$} m")
@@ -56,7 +57,7 @@ impl WhyCard<'_> {
     }
 }
 
-/// The card, in the whole width of `ui`.
+/// Shows the card in the whole width of `ui`.
 pub fn why_card(ui: &mut Ui, why: &WhyCard<'_>) {
     ui.horizontal(|ui| {
         if let Some(fill) = why.class.and_then(PixelClass::color) {
@@ -84,8 +85,8 @@ pub fn why_card(ui: &mut Ui, why: &WhyCard<'_>) {
     });
 }
 
-/// Shows the [`why_card`] on a ground of its own beside `pointer`, within `picture`: right of the pointer if there is room,
-/// else left of it. A picture smaller than the card cuts it off. It lets the pointer through.
+/// Shows the [`why_card`] on its own background beside `pointer`, within `picture`: right of the pointer if
+/// there is room, else left of it. A picture smaller than the card clips it. The card ignores the pointer.
 pub fn why_overlay(ctx: &Context, picture: Rect, pointer: Pos2, why: &WhyCard<'_>) {
     let frame = Frame::popup(&ctx.global_style());
     let sides = frame.total_margin().sum().x;

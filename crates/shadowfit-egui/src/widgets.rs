@@ -1,4 +1,4 @@
-//! The building blocks of the panel: cards, sections, buttons with icons or keys, and what shows colours.
+//! The building blocks of the panel: cards, sections, buttons with icons or keys, and colour patches.
 
 mod button;
 mod card;

@@ -1,28 +1,29 @@
-//! The report of a check of the graphics device: rows with results and tolerances, a sentence that sums them up, and a
-//! text for an issue thread. Plain data, filled in by the code that checks and shown by panels and command lines.
+//! The report of a check of the graphics device: rows with results and tolerances, a summary sentence, and a
+//! text for an issue thread. Plain data, filled in by the checking code and shown by panels and command
+//! lines.
 
 use core::fmt::Write as _;
 
 /// State of one check.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum CheckState {
-    /// It has not begun.
+    /// Not started yet.
     #[default]
     Waiting,
-    /// It is under way.
+    /// In progress.
     Running,
-    /// Its result is within the tolerance.
+    /// Result within the tolerance.
     Passed,
-    /// Its result is beyond the tolerance, or it could not be finished.
+    /// Result beyond the tolerance, or check not completed.
     Failed,
-    /// The device cannot do it, for this reason. Such a check does not fail.
+    /// Not supported by the device, for this reason. Such a check does not fail.
     Unavailable(String),
-    /// It was left out, for this reason, such as a device that was lost before.
+    /// Left out, for this reason, such as a device that was lost before.
     NotRun(String),
 }
 
 impl CheckState {
-    /// A word or two for tables.
+    /// Returns a word or two for tables.
     pub const fn word(&self) -> &'static str {
         match self {
             Self::Waiting => "waiting",
@@ -38,22 +39,22 @@ impl CheckState {
 /// One check.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CheckRow {
-    /// Its name.
+    /// Name.
     pub name: &'static str,
-    /// The two things that it compares, in a sentence.
+    /// The two things that the check compares, in a sentence.
     pub about: &'static str,
-    /// Its state.
+    /// State.
     pub state: CheckState,
-    /// Its result; of a check that failed early the reason. Empty before it has ended.
+    /// Result, or the reason of an early failure. Empty until the check has ended.
     pub found: String,
-    /// The greatest difference that counts as passed, and the guarantee or number format that it follows from.
+    /// Greatest difference that passes, and the guarantee or number format that justifies it.
     pub tolerance: &'static str,
-    /// Time that it took, in seconds.
+    /// Duration, in seconds.
     pub seconds: f64,
 }
 
 impl CheckRow {
-    /// The result, or the reason for which there is none.
+    /// Returns the result, or the reason why there is none.
     pub fn result(&self) -> String {
         match &self.state {
             CheckState::Unavailable(reason) => format!("not available: {reason}"),
@@ -63,10 +64,10 @@ impl CheckRow {
     }
 }
 
-/// The report of a check, during it and after it.
+/// The report of a check, also while it runs.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CheckReport {
-    /// Facts about program and device: names and values.
+    /// Facts about the program and the device: names and values.
     pub facts: Vec<(&'static str, String)>,
     /// The checks, in the order in which they run.
     pub rows: Vec<CheckRow>,
@@ -76,18 +77,18 @@ pub struct CheckReport {
 const WIDTH: usize = 100;
 
 impl CheckReport {
-    /// Whether every check has ended or was left out.
+    /// Returns whether every check has ended or was left out.
     pub fn has_ended(&self) -> bool {
         !self.rows.iter().any(|row| matches!(row.state, CheckState::Waiting | CheckState::Running))
     }
 
-    /// Whether every check that the device can do has passed.
+    /// Returns whether all checks that the device supports have passed, at least one of them.
     pub fn has_passed(&self) -> bool {
         let is_good = |row: &CheckRow| matches!(row.state, CheckState::Passed | CheckState::Unavailable(_));
         self.count(&CheckState::Passed) > 0 && self.rows.iter().all(is_good)
     }
 
-    /// Ends the report early, for a reason: a check that is under way has failed, and those that wait are not run.
+    /// Ends the report early: the running check fails for this reason, and waiting checks are not run.
     pub fn end(&mut self, reason: &str) {
         for row in &mut self.rows {
             match row.state {
@@ -98,7 +99,7 @@ impl CheckReport {
         }
     }
 
-    /// Number of checks that have ended or were left out.
+    /// Returns the number of checks that have ended or were left out.
     pub fn ended(&self) -> usize {
         self.rows.len() - self.count(&CheckState::Waiting) - self.count(&CheckState::Running)
     }
@@ -107,7 +108,7 @@ impl CheckReport {
         self.rows.iter().filter(|row| row.state == *state).count()
     }
 
-    /// Says in a sentence whether shadows can be trusted on the device.
+    /// Returns a sentence that tells whether shadows can be trusted on the device.
     pub fn sentence(&self) -> String {
         let names = |is_it: fn(&CheckState) -> bool| {
             let names: Vec<&str> = self.rows.iter().filter(|row| is_it(&row.state)).map(|row| row.name).collect();
@@ -129,7 +130,7 @@ impl CheckReport {
         }
         let missing = names(|state| matches!(state, CheckState::Unavailable(_)));
         if passed == 0 {
-            return format!("This device can do none of the {all} checks, so nothing is known about its shadows.");
+            return format!("This device supports none of the {all} checks, so nothing is known about its shadows.");
         }
         if missing.is_empty() {
             return format!("Shadows can be trusted on this device: all {all} checks passed.");
@@ -140,8 +141,8 @@ impl CheckReport {
         )
     }
 
-    /// The whole report as text, for a terminal or an issue thread: facts, a block of lines for each check, and the
-    /// sentence.
+    /// Returns the whole report as text for a terminal or an issue thread: facts, a block of lines per check,
+    /// and the summary sentence.
     pub fn text(&self) -> String {
         let mut text = String::from("shadowfit device check\n\n");
         let width = self.facts.iter().map(|(name, _)| name.chars().count()).max().unwrap_or(0);
@@ -169,7 +170,7 @@ impl CheckReport {
     }
 }
 
-/// Appends a text after a label, in lines that are indented like its first one.
+/// Appends a label and a text, wrapped and indented by the label's width.
 fn wrapped(text: &mut String, label: &str, value: &str) {
     let indent = label.chars().count();
     text.push_str(label);

@@ -1,4 +1,4 @@
-//! How a parameter reaches its value: reads it, sets it, and says it as Rust code.
+//! Access to a parameter's value: reading, setting, and writing it as Rust code.
 
 use glam::UVec2;
 use shadowfit::Technique;
@@ -10,33 +10,33 @@ use shadowfit::{Cascades, Maps, SingleMap, Windows};
 use crate::Value;
 use crate::tool::Settings;
 
-/// The part of the settings that a parameter shows.
+/// The part of the settings that a parameter edits.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Field {
-    /// The value, angles in radians; `None` where these settings have no such part.
+    /// Returns the value, angles in radians; `None` if these settings lack the part.
     pub(crate) get: fn(&Settings) -> Option<Value>,
-    /// Sets a value that the parameter takes, angles in radians; does nothing where these settings have no such part.
+    /// Sets a valid value, angles in radians. Does nothing if these settings lack the part.
     pub(crate) set: fn(&mut Settings, Value),
-    /// The same part as Rust code; `None` where it is not one of a technique.
+    /// The part as Rust code; `None` if it is not part of a technique.
     pub(crate) code: Option<Code>,
-    /// Whether some settings have no such part.
+    /// Whether some settings lack the part.
     pub(crate) is_of_variant: bool,
 }
 
 /// A part of a technique as Rust code. Several parameters may share one.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Code {
-    /// Where it stands in a [`Technique`], such as `fit.max_distance`.
+    /// Path in a [`Technique`], such as `fit.max_distance`.
     pub(crate) path: &'static str,
-    /// Its value as a Rust expression.
+    /// Returns the value as a Rust expression.
     pub(crate) expression: fn(&Technique) -> String,
 }
 
-/// A value that is shown as it is stored.
+/// A value that is displayed as it is stored.
 pub(crate) trait Plain {
     fn value(&self) -> Value;
 
-    /// Takes a value of the same kind; another one is ignored.
+    /// Takes a value of the same kind. Ignores any other.
     fn assign(&mut self, value: Value);
 }
 
@@ -109,7 +109,7 @@ impl Expression for f32 {
             Self::INFINITY => "f32::INFINITY".to_owned(),
             Self::NEG_INFINITY => "f32::NEG_INFINITY".to_owned(),
             value if value.is_nan() => "f32::NAN".to_owned(),
-            // The shortest digits that give the same bits.
+            // The shortest digits that restore the same bits.
             value => format!("{value:?}"),
         }
     }
@@ -199,7 +199,8 @@ impl Expression for Maps {
     }
 }
 
-/// Structs as Rust code: the fields in which they differ from the default, which the others are taken from.
+/// Implements [`Expression`] for structs: lists the fields that differ from the default, and takes the others
+/// from it.
 macro_rules! literals {
     ($($kind:ident { $($field:ident),+ })+) => {$(
         impl Expression for $kind {
@@ -220,7 +221,7 @@ literals! {
     Hysteresis { margin, max_growth, max_oversize, look_ahead }
 }
 
-/// A struct by the names of its fields, their values and their defaults.
+/// Writes a struct from the names of its fields, their values and their defaults.
 fn literal(kind: &str, fields: &[(&str, String, String)]) -> String {
     let mut differing: Vec<String> = fields
         .iter()
@@ -236,7 +237,7 @@ fn literal(kind: &str, fields: &[(&str, String, String)]) -> String {
     format!("{kind} {{ {} }}", differing.join(", "))
 }
 
-/// The Rust code of a part of a technique by its path, such as `code!(fit.max_distance)`.
+/// Makes the Rust code of a part of a technique from its path, such as `code!(fit.max_distance)`.
 macro_rules! code {
     (@path $first:ident $(.$rest:ident)*) => { concat!(stringify!($first) $(, ".", stringify!($rest))*) };
     ($first:ident $(.$rest:ident)*) => {
@@ -247,10 +248,10 @@ macro_rules! code {
     };
 }
 
-/// A field of the settings that is shown as it is:
+/// Makes a [`Field`] for a value that is displayed as it is stored:
 ///
-/// - `field!(technique.bias.constant)`: one that is always there;
-/// - `field!(technique.maps, Maps::Windows(windows) => windows.blend)`: one of a variant.
+/// - `field!(technique.bias.constant)`: a value that always exists;
+/// - `field!(technique.maps, Maps::Windows(windows) => windows.blend)`: a value of one variant.
 macro_rules! field {
     (technique $(.$path:ident)+) => {
         $crate::field::Field { code: $crate::field::code!($($path).+), ..$crate::field::field!(@ technique $(.$path)+) }
@@ -283,12 +284,12 @@ macro_rules! field {
     }};
 }
 
-/// A field that is one of several variants, in the order of the parameter's options:
+/// Makes a [`Field`] for a choice between variants, in the order of the parameter's options:
 ///
 /// - `choice!(technique.format: MapFormat [Depth32Float, R8Grey])`: all variants of a part of a technique;
-/// - `choice!(technique.maps, Maps::Single(one) => one.shape.kind in [FitKind::Sphere])`: those of a list, where the
-///   part is one of a variant;
-/// - `choice!(view.mode in ViewMode::ALL)`: those of a list.
+/// - `choice!(technique.maps, Maps::Single(one) => one.shape.kind in [FitKind::Sphere])`: a list of variants
+///   for a value that exists in one variant only;
+/// - `choice!(view.mode in ViewMode::ALL)`: a list of variants.
 macro_rules! choice {
     (technique $(.$path:ident)+: $kind:ident [$($variant:ident),+ $(,)?]) => {
         $crate::field::Field {

@@ -1,5 +1,5 @@
-//! The figures that a tool shows live: plain numbers, filled in by the code that measures them, and
-//! the colours that tell maps, errors and pixels per texel apart in pictures, legends and tables.
+//! The live figures of a tool as plain numbers, filled in by the measuring code, and the colours of maps,
+//! errors and pixels per texel in pictures, legends and tables.
 
 mod legend;
 
@@ -13,9 +13,9 @@ pub use legend::{EDGE_COLORS, ERROR_COLORS, PIXELS_PER_TEXEL_COLORS, pixels_per_
 
 /// Tints of the maps, the nearest first, as sRGB bytes of red, green and blue.
 ///
-/// The colours of M. Okabe and K. Ito ("Color universal design", 2008), with a grey for their black,
-/// which would hide the picture: people with any one kind of colour blindness tell them apart. Their
-/// order keeps neighbours, and the first four, farthest from each other for all of them.
+/// The colours of M. Okabe and K. Ito ("Color universal design", 2008), which people with any one kind of
+/// colour blindness can tell apart. Grey replaces their black, which would hide the picture. The order keeps
+/// neighbours, and the first four, as different as possible for all of them.
 pub const MAP_TINTS: [[u8; 3]; MAX_MAPS] = [
     [213, 94, 0],
     [0, 114, 178],
@@ -27,17 +27,18 @@ pub const MAP_TINTS: [[u8; 3]; MAX_MAPS] = [
     [187, 187, 187],
 ];
 
-/// [`MAP_TINTS`] as linear red, green and blue, 0..=1, in which shaders compute.
+/// Returns [`MAP_TINTS`] as linear red, green and blue, 0..=1, for shaders.
 pub fn linear_map_tints() -> [Vec3; MAX_MAPS] {
     MAP_TINTS.map(linear_color)
 }
 
-/// A colour of sRGB bytes as linear red, green and blue, 0..=1, in which shaders compute.
+/// Returns a colour of sRGB bytes as linear red, green and blue, 0..=1, for shaders.
 pub fn linear_color(srgb: [u8; 3]) -> Vec3 {
     Vec3::from(srgb.map(|byte| linear(f32::from(byte) / 255.0)))
 }
 
-/// The sRGB transfer function (IEC 61966-2-1), from an encoded value to a linear one, both 0..=1.
+/// Applies the sRGB transfer function (IEC 61966-2-1) to an encoded value, 0..=1, and returns the linear
+/// value, 0..=1.
 fn linear(encoded: f32) -> f32 {
     if encoded <= 0.040_45 { encoded / 12.92 } else { libm::powf((encoded + 0.055) / 1.055, 2.4) }
 }
@@ -45,9 +46,9 @@ fn linear(encoded: f32) -> f32 {
 /// Live figures of one frame. `None` means not measured, never zero.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Figures {
-    /// Figures of the maps, the nearest first; `None` where there is no such map.
+    /// Figures of the maps, the nearest first; `None` for missing maps.
     pub maps: [Option<MapFigures>; MAX_MAPS],
-    /// Index of the map that is read at the picture's centre, 0..8.
+    /// Index of the map that the picture's centre reads, 0..8.
     pub map_ahead: Option<u32>,
     /// Screen pixels per texel of that map, along the worse axis, at the picture's centre.
     pub pixels_per_texel: Option<f32>,
@@ -57,28 +58,28 @@ pub struct Figures {
     pub shadow_pass_ms: Option<f32>,
     /// GPU time of the scene pass, in milliseconds.
     pub scene_pass_ms: Option<f32>,
-    /// GPU time of the edge passes, in milliseconds; `None` where edges are filtered, too.
+    /// GPU time of the edge passes, in milliseconds; also `None` if edges are filtered.
     pub edges_ms: Option<f32>,
-    /// Pixels whose edges were traced, in per cent of those that face the light within the shadow distance, 0..=100; `None`
-    /// where edges are filtered, too.
+    /// Pixels whose edges were traced, in per cent of the facing pixels within the shadow distance, 0..=100;
+    /// also `None` if edges are filtered.
     pub traced: Option<f32>,
     /// Draw calls of the shadow passes of all maps.
     pub shadow_draws: Option<u32>,
     /// Triangles drawn into all maps.
     pub shadow_triangles: Option<u64>,
-    /// Texels of the maps that were drawn in this frame, kept ones left out.
+    /// Texels of the maps that were drawn in this frame, without kept texels.
     pub shadow_texels: Option<u64>,
-    /// GPU time of judging the picture against rays, in milliseconds: of the pass that finds what each pixel shows, and of
-    /// those that judge it where the GPU does.
+    /// GPU time of judging the picture against rays, in milliseconds: the probe pass, and the judging passes
+    /// if the GPU judges.
     pub judge_ms: Option<f32>,
     /// The last picture that was judged against rays.
     pub judged: Option<JudgedFigures>,
-    /// The same of the other technique, where two are compared.
+    /// The same for the other technique of a comparison.
     pub judged_other: Option<JudgedFigures>,
 }
 
-/// Figures of a picture that was judged against rays. Shares are in per cent, 0..=100, of the pixels that
-/// face the light within the shadow distance; `None` means not measured, never zero.
+/// Figures of a picture that was judged against rays. Shares are in per cent, 0..=100, of the facing pixels
+/// within the shadow distance; `None` means not measured, never zero.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct JudgedFigures {
     /// Pixels whose verdict, lit or not, differs from the truth, edges included.
@@ -91,13 +92,15 @@ pub struct JudgedFigures {
     pub hole: f32,
     /// Wrong within the zone around true edges that the map's texels explain: aliasing.
     pub edge: f32,
-    /// Mean difference between the filtered share of the light and the truth, in per cent of full light.
-    pub mean_error: f32,
+    /// Error of the sunlight, in per cent of the sunlight without shadows: the mean of |factor − truth| · N·L divided by
+    /// the mean of N·L.
+    pub light_error: f32,
     /// Pixels that no map covers.
     pub uncovered: f32,
     /// Quantiles 50%, 95% and 99% of the pixels per texel along the worse axis.
     pub pixels_per_texel: Option<[f32; 3]>,
-    /// Pixels near edges whose verdict changed only because the maps moved, in per cent of those compared.
+    /// Pixels near edges whose verdict changed only because the maps changed, in per cent of the compared
+    /// pixels.
     pub crawl: Option<f32>,
     /// How long ago the picture was drawn, in seconds.
     pub age: f32,
@@ -108,13 +111,12 @@ pub struct JudgedFigures {
 /// Live figures of one map. `None` means not measured, never zero.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct MapFigures {
-    /// View depths that this map is made for, in metres, and between which points choose it where maps
-    /// are read by view depth; `None` where there are none, as of a
-    /// [window](shadowfit::Windows).
+    /// Range of view depths of this map, in metres. Maps that are read by view depth are selected by it.
+    /// `None` without such a range, as for a [window](shadowfit::Windows).
     pub view_depths: Option<[f32; 2]>,
-    /// Width and height of what the map holds, across the light, in metres.
+    /// Width and height of the map's area across the light, in metres.
     pub extent: [f32; 2],
-    /// What set the planes -x, +x, -y, +y, far and near of the map's box, see
+    /// Causes of the planes -x, +x, -y, +y, far and near of the map's box, see
     /// [`LightProjection::bounds_from`](shadowfit::LightProjection::bounds_from).
     pub bounds_from: [BoundSource; 6],
     /// Whether no receiver is in view, see [`LightProjection::is_empty`](shadowfit::LightProjection::is_empty).
@@ -123,25 +125,25 @@ pub struct MapFigures {
     pub texel_size: [f32; 2],
     /// Extent of the map along the light, in metres.
     pub depth_range: f32,
-    /// The map's constant bias beside the rounding of its depths, in metres.
+    /// The map's constant bias compared with the rounding of its depths, in metres.
     pub rounding: DepthRounding,
-    /// Casters that are left after culling.
+    /// Casters after culling.
     pub casters: Option<u32>,
-    /// Draw calls of its shadow pass.
+    /// Draw calls of the map's shadow pass.
     pub draws: Option<u32>,
-    /// Triangles drawn into it.
+    /// Triangles drawn into the map.
     pub triangles: Option<u64>,
-    /// Texels of it that were drawn in this frame.
+    /// Texels of the map that were drawn in this frame.
     pub texels: Option<u64>,
-    /// GPU time of its shadow passes, in milliseconds.
+    /// GPU time of the map's shadow passes, in milliseconds.
     pub pass_ms: Option<f32>,
-    /// Share of its area that lies beside what it is made for, 0..=1.
+    /// Share of the map's area outside the part that it serves, 0..=1.
     pub waste: Option<f32>,
 }
 
 impl MapFigures {
-    /// The figures of a fitted map that is stored in `format`, with nothing drawn yet. `end` is the
-    /// view depth at which shadows end, in metres, since the last map itself has no end.
+    /// Returns the figures of a fitted map that is stored in `format`, with nothing drawn yet. `end` is the
+    /// view depth at which shadows end, in metres, since the last map has no end of its own.
     pub fn new(map: &FittedMap, end: f32, format: MapFormat) -> Self {
         let FittedMap { projection: fit, bias, depths, .. } = map;
         let view_depths = depths.map(|range| [range.near as f32, range.far.map_or(end, |far| end.min(far as f32))]);

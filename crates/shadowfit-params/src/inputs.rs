@@ -1,15 +1,16 @@
-//! What tools hand to a fit besides the views and the light. An engine hands in what it has; a tool says which of it.
+//! Inputs that tools give a fit besides the views and the light. An engine passes the data that it has; a
+//! tool chooses.
 
 use std::fmt;
 
 use shadowfit::Technique;
 
-/// Which of a scene's boxes a fit is given, and whether it is told what the last frame showed.
+/// Choice of a scene's boxes for a fit, and whether the fit gets the visible demand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Inputs {
-    /// Which boxes of the receivers. Default: [`BoxSource::Clusters`].
+    /// Boxes of the receivers. Default: [`BoxSource::Clusters`].
     pub boxes: BoxSource,
-    /// Whether fits are told what the last frame showed. Default: yes.
+    /// Whether fits get the visible demand of the last frame. Default: yes.
     pub visible_demand: bool,
 }
 
@@ -20,7 +21,7 @@ impl Default for Inputs {
 }
 
 impl Inputs {
-    /// Whether fits of a technique are told what the last frame showed, and go by it.
+    /// Returns whether fits of a technique get the visible demand and use it.
     pub const fn tell(self, technique: &Technique) -> bool {
         self.visible_demand && technique.maps.uses_visible_demand()
     }
@@ -36,29 +37,29 @@ impl fmt::Display for Inputs {
     }
 }
 
-/// Which boxes of the scene's receivers a fit is given.
+/// Kind of boxes of the scene's receivers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum BoxSource {
-    /// The boxes of its objects.
+    /// One box per object.
     Objects,
-    /// The boxes of clusters of its triangles, with cones of their normals
-    /// ([`Clusters`](shadowfit::Clusters)). The default.
+    /// Boxes of clusters of triangles, with cones of their normals ([`Clusters`](shadowfit::Clusters)). The
+    /// default.
     #[default]
     Clusters,
 }
 
-/// A name that stands for a preset with an input that is not the default one.
+/// A name for a preset with inputs that differ from the default.
 #[derive(Clone, Copy, Debug)]
 pub struct NamedInputs {
     /// Stable name, for files, command lines and figures.
     pub name: &'static str,
-    /// The preset that it means.
+    /// Name of the preset.
     pub preset: &'static str,
-    /// What the preset is given.
+    /// Inputs of the preset.
     pub inputs: Inputs,
 }
 
-/// The names that stand for a preset with an input.
+/// All names for presets with inputs.
 pub const NAMED_INPUTS: [NamedInputs; 4] = [
     NamedInputs {
         name: "clusters-1",
@@ -83,7 +84,7 @@ pub const NAMED_INPUTS: [NamedInputs; 4] = [
 ];
 
 impl NamedInputs {
-    /// The names of this preset and input, of [`NAMED_INPUTS`].
+    /// Returns the entry of [`NAMED_INPUTS`] with this name.
     pub fn find(name: &str) -> Option<&'static Self> {
         NAMED_INPUTS.iter().find(|named| named.name == name)
     }

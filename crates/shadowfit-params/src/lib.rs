@@ -1,8 +1,8 @@
-//! Every parameter of a [`Technique`] and of the [tools' settings](crate::tool) as plain data: name,
-//! unit, range, help and access.
+//! All parameters of a [`Technique`] and of the [tools' settings](crate::tool) as plain data: name, unit,
+//! range, help and access.
 //!
-//! Panels, command lines and saved files are generated from this one table, so that a parameter is
-//! added, renamed or given another range in one place.
+//! Panels, command lines and saved files are generated from this table, so that a parameter is added, renamed
+//! or given another range in one place.
 //!
 //! ```
 //! use shadowfit_params::{self as params, Value};
@@ -14,7 +14,7 @@
 //! params::set_from_str(&mut settings, "splits.count", "3").unwrap();
 //! assert!(params::set_from_str(&mut settings, "map.resolution", "20").is_err());
 //! for parameter in params::PARAMETERS {
-//!     // Turns off all that can be turned off.
+//!     // Turns off every toggle.
 //!     parameter.set(&mut settings, Value::Toggle(false));
 //! }
 //! ```
@@ -40,59 +40,58 @@ pub use rust_code::to_rust;
 pub use table::{PARAMETERS, view_option};
 pub use text::{ParameterError, format_value, set_from_str};
 
-/// The far plane and the shadow distance are kept at this many times the near distance or more:
-/// the setting that is changed wins and moves the others.
+/// Least ratio of the far plane and of the shadow distance to the near distance. The setting that is changed
+/// wins and moves the others.
 ///
-/// Two, because it is exact in binary, so that a saved file reads back the same bits, and because
-/// no practical view has less depth than that.
+/// Two is exact in binary, so that a saved file restores the same bits, and no practical view has a smaller
+/// depth range.
 pub const MIN_FAR_PER_NEAR: f32 = 2.0;
 
-/// One parameter of [`Settings`]: all that tools know about it.
+/// One parameter of [`Settings`], with everything that tools know about it.
 #[derive(Clone, Copy, Debug)]
 pub struct Parameter {
-    /// Stable name for files and command lines: the group's id, a dot, and the parameter's own
-    /// name.
+    /// Stable name for files and command lines: the group's id, a dot, and the parameter's own name.
     pub id: &'static str,
-    /// Group that it is shown in.
+    /// Group of the parameter.
     pub group: Group,
     /// Name for people, without its unit.
     pub label: &'static str,
-    /// Unit of the value as shown ("texels", "m", "deg"); empty when it has none.
+    /// Unit of the displayed value ("texels", "m", "deg"); empty if it has none.
     pub unit: &'static str,
-    /// What it does to the picture and when to change it, in a sentence or two.
+    /// Effect on the picture and when to change the value, in a sentence or two.
     pub help: &'static str,
-    /// What values it takes.
+    /// Kind of values that the parameter takes.
     pub kind: Kind,
-    /// How its value is read and set.
+    /// Access to the value.
     field: Field,
-    /// Why the parameter has no effect under these settings, or `None` when it has one.
+    /// Returns why the parameter has no effect under these settings, or `None` if it has one.
     pub inert: fn(&Settings) -> Option<&'static str>,
 }
 
 impl Parameter {
-    /// The value, as it stands: settings that were filled by hand may lie outside the range. `None` where
-    /// the parameter does not exist under these settings: λ exists only while the practical splits are
-    /// chosen, and the manual splits only while those are.
+    /// Returns the value, which may lie outside the range if code has set it directly. `None` if the
+    /// parameter does not exist under these settings: λ exists only with the practical splits, and the manual
+    /// splits only with their own scheme.
     pub fn get(&self, settings: &Settings) -> Option<Value> {
         let value = (self.field.get)(settings)?;
         Some(if self.is_angle() { value.map(f64::to_degrees) } else { value })
     }
 
-    /// Whether it is shown in degrees, and so is an angle that the settings have in radians.
+    /// Returns whether the value is shown in degrees and stored in radians.
     fn is_angle(&self) -> bool {
         self.unit.starts_with("deg")
     }
 
-    /// The value where it is a number.
+    /// Returns the value if it is a number.
     pub fn number(&self, settings: &Settings) -> Option<f64> {
         self.get(settings).and_then(Value::number)
     }
 
-    /// Sets the value, a number clamped to the range. NaN, infinity and what is not of the parameter's
-    /// [kind](Self::kind) are ignored, and so is any value while the parameter [does not exist](Self::get).
+    /// Sets the value, clamping a number to the range. Ignores NaN, infinity, a value of another
+    /// [kind](Self::kind), and any value while the parameter [does not exist](Self::get).
     ///
     /// The near and far planes and the shadow distance move each other, see [`MIN_FAR_PER_NEAR`].
-    /// Where [`Number::decimals`] is 0, the fraction is cut off.
+    /// If [`Number::decimals`] is 0, the fraction is cut off.
     pub fn set(&self, settings: &mut Settings, value: Value) {
         let value = match (&self.kind, value) {
             (Kind::Number(range), Value::Number(number)) if number.is_finite() => {
@@ -107,24 +106,24 @@ impl Parameter {
         }
     }
 
-    /// Whether the parameter has the same value in both settings.
+    /// Returns whether the parameter has the same value in both settings.
     pub fn is_equal(&self, a: &Settings, b: &Settings) -> bool {
         self.get(a) == self.get(b)
     }
 
-    /// Sets the parameter to the value that it has in `from`, by the rules of its kind.
+    /// Copies the parameter's value from other settings, as [`Self::set`] does.
     pub fn copy(&self, settings: &mut Settings, from: &Settings) {
         if let Some(value) = self.get(from) {
             self.set(settings, value);
         }
     }
 
-    /// Whether it exists only with some choices of another parameter.
+    /// Returns whether the parameter exists only with some choices of another parameter.
     pub fn is_of_choice(&self) -> bool {
         self.field.is_of_variant
     }
 
-    /// Whether the parameter [exists](Self::get) under these settings.
+    /// Returns whether the parameter [exists](Self::get) under these settings.
     pub fn is_present(&self, settings: &Settings) -> bool {
         self.get(settings).is_some()
     }
@@ -133,7 +132,7 @@ impl Parameter {
 /// A value of a parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Value {
-    /// A number, in the unit of its [`Parameter`].
+    /// A number in the unit of its [`Parameter`].
     Number(f64),
     /// No number, see [`Number::unset`].
     Unset,
@@ -144,28 +143,28 @@ pub enum Value {
 }
 
 impl Value {
-    /// The number, where it is one.
+    /// Returns the number, if there is one.
     pub const fn number(self) -> Option<f64> {
         if let Self::Number(number) = self { Some(number) } else { None }
     }
 
-    /// The same with its number changed, where it is one.
+    /// Returns the value with its number changed, if it has one.
     fn map(self, change: fn(f64) -> f64) -> Self {
         if let Self::Number(number) = self { Self::Number(change(number)) } else { self }
     }
 }
 
-/// The parameters that make up a [`Technique`], in the order that they are shown.
+/// Returns the parameters of a [`Technique`], in display order.
 pub fn technique_parameters() -> impl Iterator<Item = &'static Parameter> {
     PARAMETERS.iter().filter(|parameter| parameter.group.is_technique())
 }
 
-/// Sets one parameter of a technique from text, as [`set_from_str`] does.
+/// Sets one parameter of a technique from text, like [`set_from_str`].
 ///
 /// # Errors
 ///
-/// As [`set_from_str`]; [`ParameterError::NotOfTechnique`] for the id of a parameter that is not
-/// part of a technique.
+/// The errors of [`set_from_str`], and [`ParameterError::NotOfTechnique`] if the parameter is not part of a
+/// technique.
 pub fn set_technique_from_str(technique: &mut Technique, id: &str, value: &str) -> Result<(), ParameterError> {
     if parameter(id).is_some_and(|parameter| !parameter.group.is_technique()) {
         return Err(ParameterError::NotOfTechnique { id: id.to_owned() });
@@ -176,12 +175,12 @@ pub fn set_technique_from_str(technique: &mut Technique, id: &str, value: &str) 
     Ok(())
 }
 
-/// What values a parameter takes.
+/// Kind of values that a parameter takes.
 #[derive(Clone, Copy, Debug)]
 pub enum Kind {
-    /// A number in a range, or no number.
+    /// A number in a range, or unset.
     Number(Number),
-    /// One of a few named options, in the order that they are shown.
+    /// One of a few named options, in display order.
     Choice(&'static [ChoiceOption]),
     /// On or off.
     Toggle,
@@ -194,22 +193,22 @@ pub struct Number {
     pub min: f64,
     /// Greatest value.
     pub max: f64,
-    /// A fine step for keys and dragging; not a grid, values between steps are kept.
+    /// Fine step for keys and dragging. Values between steps are allowed.
     pub step: f64,
     /// Whether a slider over the range should be logarithmic.
     pub logarithmic: bool,
-    /// Decimals worth showing; 0 for whole numbers.
+    /// Displayed decimals; 0 for whole numbers.
     pub decimals: usize,
-    /// Whether there need be no number, and what that means.
+    /// Meaning of having no number; `None` if a number is required.
     pub unset: Option<Unset>,
 }
 
-/// A number that need not be there.
+/// The unset state of an optional number.
 #[derive(Clone, Copy, Debug)]
 pub struct Unset {
-    /// Name and description of having no number.
+    /// Name and description of the unset state.
     pub option: ChoiceOption,
-    /// The number that a panel starts from when one is asked for.
+    /// Initial number when the user sets one in a panel.
     pub initial: f64,
 }
 
@@ -220,37 +219,37 @@ pub struct ChoiceOption {
     pub id: &'static str,
     /// Name for people.
     pub label: &'static str,
-    /// What it does to the picture.
+    /// Effect on the picture.
     pub help: &'static str,
 }
 
-/// A group of parameters, shown under one heading.
+/// A group of parameters under one heading.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Group {
-    /// How each map is fitted.
+    /// The fit of each map.
     Fit,
-    /// How many maps there are, and where one ends and the next begins.
+    /// The number of maps and the splits between them.
     Splits,
-    /// What keeps the maps stable while the camera moves.
+    /// Stability of the maps while the camera moves.
     Stabilise,
-    /// What a shadow map stores and how it is read.
+    /// Contents of a shadow map, and its filter.
     Map,
-    /// How wide soft filters are.
+    /// Width of soft filters.
     Softness,
     /// Biases against self-shadowing.
     Bias,
-    /// What of the scene a fit is given.
+    /// Scene data for a fit.
     Input,
     /// The sun.
     Light,
     /// Lens and speed of the camera.
     Camera,
-    /// What is drawn.
+    /// The displayed picture.
     View,
 }
 
 impl Group {
-    /// All groups, in the order that they are shown.
+    /// All groups, in display order.
     pub const ALL: [Self; 10] = [
         Self::Fit,
         Self::Splits,
@@ -264,12 +263,12 @@ impl Group {
         Self::View,
     ];
 
-    /// Whether its parameters are part of the [`Technique`]; the others belong to the tools.
+    /// Returns whether the group's parameters are part of the [`Technique`]. All others belong to the tools.
     pub const fn is_technique(self) -> bool {
         !matches!(self, Self::Input | Self::Light | Self::Camera | Self::View)
     }
 
-    /// Stable name; the ids of the group's parameters begin with it and a dot.
+    /// Returns the stable name. The ids of the group's parameters begin with it and a dot.
     pub const fn id(self) -> &'static str {
         match self {
             Self::Fit => "fit",
@@ -285,7 +284,7 @@ impl Group {
         }
     }
 
-    /// Name for people.
+    /// Returns the name for people.
     pub const fn label(self) -> &'static str {
         match self {
             Self::Fit => "Fit",
@@ -301,32 +300,32 @@ impl Group {
         }
     }
 
-    /// What the group's parameters have in common, in a sentence.
+    /// Returns the common purpose of the group's parameters, in a sentence.
     pub const fn help(self) -> &'static str {
         match self {
-            Self::Fit => "Which part of the scene a shadow map covers.",
-            Self::Splits => "How many maps share the view, and at which distances one ends and the next begins.",
-            Self::Stabilise => "Whether maps stay where they are while the camera moves, so that edges do not crawl.",
-            Self::Map => "How large a shadow map is, what it stores and how it is read.",
-            Self::Softness => "How wide the edges of shadows are with filters whose width is no number of texels.",
+            Self::Fit => "Part of the scene that a shadow map covers.",
+            Self::Splits => "Number of maps for the view, and the distances at which one ends and the next begins.",
+            Self::Stabilise => "Whether maps keep their place while the camera moves, so that edges do not crawl.",
+            Self::Map => "Size, contents and filter of a shadow map.",
+            Self::Softness => "Width of shadow edges with soft filters, in metres or by the sun's size.",
             Self::Bias => {
-                "How far the comparison is moved so that a surface does not shadow itself. Too little leaves \
-                 acne, too much detaches shadows from their casters."
+                "Offset of the depth comparison that prevents a surface from shadowing itself. Too little leaves acne, \
+                 too much detaches shadows from their casters."
             }
-            Self::Input => "What a fit is told of the scene: an engine hands in what it has.",
-            Self::Light => "Where the sun stands.",
-            Self::Camera => "The lens and the speed of the camera.",
-            Self::View => "What is drawn over or instead of the picture.",
+            Self::Input => "Scene data for the fit; an engine passes the data that it has.",
+            Self::Light => "Position of the sun.",
+            Self::Camera => "Lens and speed of the camera.",
+            Self::View => "Views and overlays of the picture.",
         }
     }
 
-    /// The parameters of this group, in the order that they are shown.
+    /// Returns the parameters of this group, in display order.
     pub fn parameters(self) -> impl Iterator<Item = &'static Parameter> {
         PARAMETERS.iter().filter(move |parameter| parameter.group == self)
     }
 }
 
-/// The parameter of that id, or `None` when there is none.
+/// Returns the parameter with this id, or `None` if there is none.
 pub fn parameter(id: &str) -> Option<&'static Parameter> {
     PARAMETERS.iter().find(|parameter| parameter.id == id)
 }

@@ -1,4 +1,4 @@
-//! A technique as Rust code, to be pasted into an engine.
+//! A technique as Rust code to paste into an engine.
 
 use std::fmt::Write as _;
 
@@ -7,11 +7,11 @@ use shadowfit::{PRESETS, Technique};
 use crate::field::Code;
 use crate::technique_parameters;
 
-/// The field that says the kind of the maps: all of it is written at once.
+/// The field for the kind of the maps, which is written as a whole.
 const MAPS: &str = "maps";
 
-/// Statements that make a technique: the default one or the preset that is nearest to it, and a line for each field in
-/// which it differs from that. They need `use shadowfit::{*, glam::UVec2, settings::*};`.
+/// Returns Rust statements that make a technique: the default one or the nearest preset, and a line for each
+/// field that differs from it. They need `use shadowfit::{*, glam::UVec2, settings::*};`.
 ///
 /// ```
 /// use shadowfit::Technique;
@@ -28,7 +28,7 @@ pub fn to_rust(technique: &Technique) -> String {
     let default = ("Technique::default()".to_owned(), Technique::default());
     let preset = |name| format!("Technique::preset({name:?}).expect(\"a preset of shadowfit\")");
     let presets = PRESETS.iter().map(|made| (preset(made.name), made.technique()));
-    // Of several that are equally near the first one is taken, which is the default.
+    // Of several equally near ones, the first one is taken. The default comes first.
     let starts = [default].into_iter().chain(presets);
     let nearest = starts.map(|(code, start)| (code, lines(technique, &start))).min_by_key(|(_, lines)| lines.len());
     let (start, lines) = nearest.unwrap_or_default();
@@ -43,7 +43,8 @@ pub fn to_rust(technique: &Technique) -> String {
     code
 }
 
-/// The fields in which a technique differs from another one, by their paths, with their values as code.
+/// Returns the paths of the fields that differ between two techniques, with their values in `technique` as
+/// code.
 fn lines(technique: &Technique, start: &Technique) -> Vec<(&'static str, String)> {
     let mut lines: Vec<(&'static str, String)> = Vec::new();
     for Code { path, expression } in technique_parameters().filter_map(|parameter| parameter.field.code) {

@@ -1,4 +1,5 @@
-//! The rows of the parameter table, in the order that they are shown. A row is all that is said about its parameter.
+//! The rows of the parameter table, in display order. A row holds everything that tools know about its
+//! parameter.
 
 mod bias;
 mod fit;
@@ -13,7 +14,7 @@ use crate::tool::Settings;
 use crate::{MIN_FAR_PER_NEAR, Parameter, Value};
 pub use tool::view_option;
 
-/// The rows by their files.
+/// The rows by file.
 const ROWS: [&[Parameter]; 8] =
     [fit::ROWS, splits::ROWS, stabilise::ROWS, map::ROWS, softness::ROWS, bias::ROWS, input::ROWS, tool::ROWS];
 
@@ -46,17 +47,17 @@ const fn always_active(_: &Settings) -> Option<&'static str> {
     None
 }
 
-/// The value of a number that means none where it is the greatest.
+/// Returns the value of a number whose greatest value means unset.
 fn unless_greatest(number: f32) -> Value {
     if number < f32::MAX { Value::Number(f64::from(number)) } else { Value::Unset }
 }
 
-/// The number of a value, the greatest one for none.
+/// Returns the number of a value; the greatest f32 if unset.
 fn or_greatest(value: Value) -> f32 {
     value.number().map_or(f32::MAX, |number| number as f32)
 }
 
-/// Keeps the near plane below a distance that was just set.
+/// Keeps the near plane below a distance that has just been set.
 fn pull_near(settings: &mut Settings, far: f32) {
     settings.camera.near = settings.camera.near.min(far / MIN_FAR_PER_NEAR);
 }

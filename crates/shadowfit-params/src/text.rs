@@ -5,20 +5,20 @@ use std::fmt;
 use super::{Kind, Number, PARAMETERS, Parameter, Value, parameter, technique_parameters};
 use crate::tool::Settings;
 
-/// Sets one parameter from text: a number in the parameter's unit, an option's id, or `true`,
-/// `on`, `false`, `off`. Spaces around the value are ignored.
+/// Sets one parameter from text: a number in the parameter's unit, an option's id, or `true`, `on`, `false`,
+/// `off`. Spaces around the value are ignored.
 ///
-/// Unlike [`Parameter::set`], a number outside its range and a fraction where whole numbers are meant
-/// are errors, since a file or command line has no slider that would show what became of them.
+/// Unlike [`Parameter::set`], this returns an error for a number outside its range and for a fraction where
+/// whole numbers are required. A file or command line has no slider that would show the clamped value.
 ///
 /// # Errors
 ///
-/// [`ParameterError`], with `settings` untouched: the id is unknown, the value is not one that the
-/// parameter takes, or the parameter [does not exist](Parameter::get) under these settings.
+/// [`ParameterError`], with `settings` unchanged: the id is unknown, the parameter does not take the value,
+/// or the parameter [does not exist](Parameter::get) under these settings.
 pub fn set_from_str(settings: &mut Settings, id: &str, value: &str) -> Result<(), ParameterError> {
     let parameter = parameter(id).ok_or_else(|| ParameterError::UnknownId { id: id.to_owned() })?;
     let value = parse(parameter, value.trim())?;
-    // Having no number says nothing where there cannot be one.
+    // Unset is always valid for a parameter that does not exist.
     if !parameter.is_present(settings) && value != Value::Unset {
         let reason = (parameter.inert)(settings).unwrap_or_default();
         return Err(ParameterError::NotPresent { parameter, reason });
@@ -27,7 +27,7 @@ pub fn set_from_str(settings: &mut Settings, id: &str, value: &str) -> Result<()
     Ok(())
 }
 
-/// The value that a text means.
+/// Parses a text as a value of the parameter.
 fn parse(parameter: &'static Parameter, text: &str) -> Result<Value, ParameterError> {
     let value = || text.to_owned();
     match &parameter.kind {
@@ -54,11 +54,11 @@ fn parse(parameter: &'static Parameter, text: &str) -> Result<Value, ParameterEr
     }
 }
 
-/// A parameter's value as [`set_from_str`] reads it, without its unit.
+/// Returns a parameter's value as text that [`set_from_str`] reads, without its unit.
 ///
-/// A number gets the fewest decimals that restore the setting to the bit; one outside its range,
-/// which no text restores, is written with all its digits. A parameter that [does not
-/// exist](Parameter::get) under these settings is written as an empty string.
+/// A number gets the fewest decimals that restore the setting to the bit. A number outside its range, which
+/// no text restores, is written with all its digits. A parameter that [does not exist](Parameter::get) under
+/// these settings gives an empty string.
 pub fn format_value(settings: &Settings, parameter: &Parameter) -> String {
     match (parameter.get(settings), &parameter.kind) {
         (Some(Value::Number(value)), Kind::Number(range)) => number_text(settings, parameter, value, range),
@@ -72,8 +72,8 @@ pub fn format_value(settings: &Settings, parameter: &Parameter) -> String {
 }
 
 fn number_text(settings: &Settings, parameter: &Parameter, value: f64, range: &Number) -> String {
-    /// More than any value in any range needs: f32 has 9 significant decimal digits, and the least
-    /// positive values of the ranges are hundredths.
+    /// More than any value in any range needs: f32 has 9 significant decimal digits, and the least positive
+    /// values of the ranges are hundredths.
     const MOST_DECIMALS: usize = 17;
     let restores = |text: &String| {
         let Ok(parsed) = text.parse() else { return false };
@@ -85,46 +85,46 @@ fn number_text(settings: &Settings, parameter: &Parameter, value: f64, range: &N
     texts.into_iter().find(restores).unwrap_or_else(|| value.to_string())
 }
 
-/// Why a parameter could not be set from text.
+/// Reason why a parameter could not be set from text.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub enum ParameterError {
     /// No parameter has that id.
     UnknownId {
-        /// The id that was asked for.
+        /// The requested id.
         id: String,
     },
-    /// The value is not a number, or not a whole one where that is needed.
+    /// The value is not a number, or not a whole number where one is required.
     NotANumber {
         /// The parameter.
         parameter: &'static Parameter,
-        /// What was given.
+        /// The rejected value.
         value: String,
     },
     /// The parameter is not part of a [`Technique`](shadowfit::Technique).
     NotOfTechnique {
-        /// The id that was asked for.
+        /// The requested id.
         id: String,
     },
     /// The number lies outside the parameter's range, or is NaN.
     OutOfRange {
         /// The parameter.
         parameter: &'static Parameter,
-        /// What was given.
+        /// The rejected value.
         value: String,
     },
-    /// The value is none of the parameter's options.
+    /// The value is not an option of the parameter.
     UnknownOption {
         /// The parameter.
         parameter: &'static Parameter,
-        /// What was given.
+        /// The rejected value.
         value: String,
     },
-    /// Another parameter's value means that this one does not exist.
+    /// The parameter does not exist with the value of another parameter.
     NotPresent {
         /// The parameter.
         parameter: &'static Parameter,
-        /// What to set first.
+        /// Reason, with the setting to change first.
         reason: &'static str,
     },
 }
@@ -179,7 +179,7 @@ fn allowed(f: &mut fmt::Formatter<'_>, parameter: &Parameter) -> fmt::Result {
     }
 }
 
-/// Words with commas between them.
+/// Writes words separated by commas.
 fn list(f: &mut fmt::Formatter<'_>, words: impl Iterator<Item = &'static str>) -> fmt::Result {
     f.write_str(&words.collect::<Vec<_>>().join(", "))
 }

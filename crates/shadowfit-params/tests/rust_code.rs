@@ -1,6 +1,6 @@
-//! The Rust code of a technique compiles and makes that technique.
+//! The Rust code of a technique compiles and makes the same technique.
 //!
-//! The samples under `rust_code/` are what is written now. This writes them anew:
+//! The samples under `rust_code/` hold the current code. This command writes them again:
 //!
 //! ```sh
 //! SHADOWFIT_UPDATE_GOLDENS=1 cargo test -p shadowfit-params --test rust_code
@@ -13,10 +13,10 @@ use shadowfit::settings::*;
 use shadowfit::*;
 use shadowfit_params::to_rust;
 
-/// A technique with a name, what the code in its sample makes, and that code.
+/// A technique with a name, the technique that the code of its sample makes, and that code.
 type Sample = (&'static str, Technique, Technique, &'static str);
 
-/// A sample by the name of its file.
+/// Makes a sample from the name of its file.
 macro_rules! sample {
     ($name:literal, $technique:expr) => {
         (
@@ -42,7 +42,7 @@ fn samples() -> [Sample; 7] {
     ]
 }
 
-/// A technique of which no parameter has its default value.
+/// Returns a technique without default values.
 fn all_fields() -> Technique {
     Technique {
         maps: Maps::Cascades(Cascades {
@@ -78,7 +78,7 @@ fn all_fields() -> Technique {
     }
 }
 
-/// Single fields in each of the nested structs.
+/// Returns a technique with single fields changed in each of the nested structs.
 fn some_fields() -> Technique {
     let hold = Hysteresis::default().with_look_ahead(60);
     let cascades =
@@ -125,7 +125,7 @@ fn write_anew() {
     }
 }
 
-/// A sample: a block with the written statement, and the technique as its value.
+/// Returns a sample: a block with the generated statement, and the technique as its value.
 fn code_of(technique: &Technique) -> String {
     let code = to_rust(technique);
     format!("{{\n{code}technique\n}}\n")

@@ -1,4 +1,4 @@
-//! The sun's angles and its day, and the names of views.
+//! The sun's angles and hours, and the names of views.
 
 use proptest::prelude::*;
 use shadowfit::glam::Vec3;
@@ -54,7 +54,7 @@ fn a_direction_that_is_none_has_no_angles() {
 }
 
 proptest! {
-    /// Two angles rounded to f32: up to 1.2e-7 rad at π.
+    /// Rounding error of two angles in f32: up to 1.2e-7 rad at π.
     #[test]
     fn angles_and_direction_convert_back_and_forth(direction in prop::array::uniform3(-1.0_f32..=1.0)) {
         let direction = Vec3::from(direction);
@@ -89,7 +89,7 @@ fn an_animated_sun_circles_or_passes_over_the_day_and_a_still_one_stays() {
     assert_eq!(moved(still, 5.0), still);
     let circling = LightSettings { animate: true, animate_speed: FRAC_PI_2, azimuth: PI - 0.1, ..still };
     assert!((moved(circling, 1.0).azimuth - (-FRAC_PI_2 - 0.1)).abs() < 1e-5);
-    // A right angle is six hours, and the night has none.
+    // A right angle takes six hours, and the animated day has no night.
     let day = LightSettings { hour: Some(16.0), ..circling };
     assert!((moved(day, 1.0).hour.unwrap() - 10.0).abs() < 1e-5);
     assert_eq!(moved(day, 1.0).azimuth, day.azimuth);

@@ -1,8 +1,8 @@
-//! The attachments of the renderer's passes, and the part of a picture that a frame draws.
+//! Attachments of the renderer's passes, and the part of a picture that a frame draws.
 
 use glam::{Mat4, Vec2, Vec3};
 
-/// A colour attachment that is cleared; resolved where there is a target for that.
+/// Returns a cleared colour attachment, resolved if there is a resolve target.
 pub fn cleared<'a>(
     view: &'a wgpu::TextureView,
     resolve_target: Option<&'a wgpu::TextureView>,
@@ -13,31 +13,32 @@ pub fn cleared<'a>(
     wgpu::RenderPassColorAttachment { view, depth_slice: None, resolve_target, ops }
 }
 
-/// A colour attachment that is drawn over.
+/// Returns a colour attachment that keeps its content.
 pub fn drawn_over(view: &wgpu::TextureView) -> wgpu::RenderPassColorAttachment<'_> {
     let ops = wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store };
     wgpu::RenderPassColorAttachment { view, depth_slice: None, resolve_target: None, ops }
 }
 
-/// The camera's depth, reversed: cleared to the far value 0, and kept.
+/// Returns the camera's depth attachment, reversed: cleared to the far value 0, and stored.
 pub fn depth(view: &wgpu::TextureView) -> wgpu::RenderPassDepthStencilAttachment<'_> {
     let ops = wgpu::Operations { load: wgpu::LoadOp::Clear(0.0), store: wgpu::StoreOp::Store };
     wgpu::RenderPassDepthStencilAttachment { view, depth_ops: Some(ops), stencil_ops: None }
 }
 
-/// The camera's depth as it was drawn before.
+/// Returns the camera's depth attachment with its earlier content.
 pub(crate) fn kept_depth(view: &wgpu::TextureView) -> wgpu::RenderPassDepthStencilAttachment<'_> {
     let ops = wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store };
     wgpu::RenderPassDepthStencilAttachment { view, depth_ops: Some(ops), stencil_ops: None }
 }
 
-/// The part of a scissor rectangle (left, top, width, height, in pixels) that lies in a picture.
+/// Clamps a scissor rectangle (left, top, width, height, in pixels) to a picture.
 pub fn part([x, y, width, height]: [u32; 4], size: [u32; 2]) -> [u32; 4] {
     let [x, y] = [x.min(size[0]), y.min(size[1])];
     [x, y, width.min(size[0] - x), height.min(size[1] - y)]
 }
 
-/// Clip space of a part of a picture, as it fills the screen, from that of the whole picture; with a pixel around it.
+/// Returns the matrix from the clip space of a whole picture to the clip space of a part that fills the
+/// screen, with a margin of one pixel.
 pub(crate) fn part_from_whole([x, y, width, height]: [u32; 4], size: [u32; 2]) -> Mat4 {
     let [x, y, width, height] = [x, y, width, height].map(|side| side as f32);
     let size = Vec2::from(size.map(|side| side as f32));

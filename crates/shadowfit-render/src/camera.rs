@@ -1,34 +1,34 @@
-//! The free-flying camera: a position, three angles and a speed, moved by plain input values so that
-//! it needs no window. World space, right-handed, y up; yaw 0 and pitch 0 look along -z.
+//! The free-flying camera: a position, three angles and a speed. Plain input values move it, so it needs no
+//! window. World space, right-handed, y up; yaw 0 and pitch 0 look along -z.
 
 use glam::{DVec3, Vec2, Vec3};
 use shadowfit::{Camera, Lens, PerspectiveCamera};
 use shadowfit_params::tool::{CameraSettings, FLYING_SPEEDS, HEIGHTS};
 
-/// Steepest look up or down that turning reaches, in radians: just short of the vertical, where "up" would flip.
+/// Steepest pitch that turning reaches, in radians: just short of the vertical, where "up" would flip.
 pub const MAX_PITCH: f32 = 1.55;
-/// Turning speed of the arrow keys and of a fully pressed stick, in radians a second.
+/// Turning speed of the arrow keys and of a fully pressed stick, in radians per second.
 pub const TURN_SPEED: f32 = 1.5;
-/// How many times faster the camera flies while "fast" is held.
+/// Factor on the flying speed while "fast" is held.
 pub const FAST_FACTOR: f32 = 4.0;
 /// Turn per pixel of mouse drag, in radians.
 pub const DRAG_RADIANS_PER_PIXEL: f32 = 0.004;
-/// Flight for each point that two fingers move, in seconds at the camera's speed.
+/// Flight per point that two fingers move, in seconds at the camera's speed.
 pub const PAN_SECONDS_PER_POINT: f32 = 0.005;
-/// Flight while two fingers come e times as far apart, in seconds at the camera's speed.
+/// Flight while the distance of two fingers grows by a factor of e, in seconds at the camera's speed.
 pub const PINCH_SECONDS: f32 = 2.0;
 /// Speed factor per notch of the wheel.
 pub const WHEEL_FACTOR: f32 = 1.2;
 
-/// Sine of the angle to the vertical below which a direction of view has no yaw of its own: a placed camera gets the yaw
-/// with which it needs no roll.
+/// Sine of the angle to the vertical below which a view direction has no defined yaw. A placed camera then
+/// gets the yaw that needs no roll.
 const VERTICAL_SINE: f32 = 1e-4;
 
-/// Roll of a placed camera below which it is rounding of its directions, in radians: 0.01 pixels at the side of a picture
-/// 2000 pixels wide.
+/// Roll of a placed camera below which it counts as rounding of its directions, in radians: 0.01 pixels at
+/// the side of a picture 2000 pixels wide.
 const LEAST_ROLL: f32 = 1e-5;
 
-/// Longest step that is integrated at once, in seconds: turning while moving follows the same curve
+/// Longest step that is integrated at once, in seconds, so that turning while moving follows the same curve
 /// at any frame rate.
 const MAX_STEP: f32 = 1.0 / 240.0;
 /// Longest frame time that is used, in seconds, so that a stall does not fling the camera away.
@@ -41,9 +41,9 @@ pub struct FlyCamera {
     pub position: DVec3,
     /// Turn about +y, in radians; 0 looks along -z, positive turns left.
     pub yaw: f32,
-    /// Look up (positive) or down, in radians, within ±π/2. Turning keeps it within ±[`MAX_PITCH`].
+    /// Pitch in radians within ±π/2, positive upward. Turning keeps it within ±[`MAX_PITCH`].
     pub pitch: f32,
-    /// Turn about the direction of view, in radians; positive leans the head to the right. Flying keeps it.
+    /// Turn about the view direction, in radians; positive tilts the head to the right. Flying keeps it.
     pub roll: f32,
 }
 
@@ -56,18 +56,20 @@ pub struct FlyInput {
     pub turn: Vec2,
     /// Mouse drag since the last frame, in pixels, x right, y down.
     pub drag: Vec2,
-    /// Movement of two fingers since the last frame, in points, x right, y down: the scene goes with them.
+    /// Movement of two fingers since the last frame, in points, x right, y down. The scene follows the
+    /// fingers.
     pub pan: Vec2,
-    /// Natural logarithm of the factor by which two fingers came apart since the last frame; apart flies forward.
+    /// Natural logarithm of the factor by which the distance of two fingers grew since the last frame.
+    /// Positive flies forward.
     pub pinch: f32,
     /// Wheel notches since the last frame; up is positive.
     pub wheel: f32,
-    /// Flies [`FAST_FACTOR`] times as fast.
+    /// Whether the camera flies [`FAST_FACTOR`] times faster.
     pub fast: bool,
 }
 
 impl FlyInput {
-    /// Whether it moves or turns the camera.
+    /// Returns whether the input moves or turns the camera.
     pub fn moves(&self) -> bool {
         let Self { movement, turn, drag, pan, pinch, wheel: _, fast: _ } = *self;
         movement != Vec3::ZERO || [turn, drag, pan].iter().any(|turned| *turned != Vec2::ZERO) || pinch != 0.0
@@ -75,8 +77,8 @@ impl FlyInput {
 }
 
 impl FlyCamera {
-    /// A camera at `eye` that looks at `target` (world space, metres). Straight up or down is
-    /// limited to [`MAX_PITCH`]; a target at the eye looks along -z.
+    /// Returns a camera at `eye` that looks at `target` (world space, metres). The pitch is limited to
+    /// [`MAX_PITCH`]. If the target is at the eye, the camera looks along -z.
     pub fn look_at(eye: DVec3, target: DVec3) -> Self {
         let look = (target - eye).as_vec3();
         let mut camera = Self { position: eye, yaw: 0.0, pitch: 0.0, roll: 0.0 };
@@ -84,8 +86,8 @@ impl FlyCamera {
         camera
     }
 
-    /// A camera at `eye` (world space, metres) with exactly these unit directions of view and upward, perpendicular to
-    /// each other. A view straight up or down gets no roll.
+    /// Returns a camera at `eye` (world space, metres) with exactly these unit view and up directions, which
+    /// must be perpendicular. A view straight up or down gets no roll.
     pub fn placed(eye: DVec3, forward: Vec3, up: Vec3) -> Self {
         let flat = Vec2::new(forward.x, forward.z).length();
         let pitch = forward.y.atan2(flat);
@@ -107,28 +109,28 @@ impl FlyCamera {
         }
     }
 
-    /// Unit look direction, world space.
+    /// Returns the unit view direction, world space.
     pub fn forward(&self) -> Vec3 {
         let (sin_yaw, cos_yaw) = self.yaw.sin_cos();
         let (sin_pitch, cos_pitch) = self.pitch.sin_cos();
         Vec3::new(-sin_yaw * cos_pitch, sin_pitch, -cos_yaw * cos_pitch)
     }
 
-    /// Unit direction that appears upward, world space.
+    /// Returns the unit direction that appears upward, world space.
     pub fn up(&self) -> Vec3 {
         let (sin_roll, cos_roll) = self.roll.sin_cos();
         self.right().cross(self.forward()) * cos_roll + self.right() * sin_roll
     }
 
-    /// Unit direction to the right, world space, level: without the roll.
+    /// Returns the unit direction to the right, world space, level: without the roll.
     pub fn right(&self) -> Vec3 {
         let (sin_yaw, cos_yaw) = self.yaw.sin_cos();
         Vec3::new(cos_yaw, 0.0, -sin_yaw)
     }
 
-    /// Moves and turns for `seconds` and applies the wheel to `settings.speed`. Two half frames
-    /// give the same result as one whole frame. In an orthographic picture, flying forward or back changes
-    /// `settings.height` instead, since no flight along the view changes such a picture.
+    /// Moves and turns for `seconds` and applies the wheel to `settings.speed`. Two half frames give the same
+    /// result as one whole frame. In an orthographic picture, flying forward or back changes
+    /// `settings.height` instead, because motion along the view would not change the picture.
     pub fn update(&mut self, settings: &mut CameraSettings, input: &FlyInput, seconds: f32) {
         let (slowest, fastest) = FLYING_SPEEDS;
         settings.speed = (settings.speed * WHEEL_FACTOR.powf(input.wheel)).clamp(slowest, fastest);
@@ -150,7 +152,7 @@ impl FlyCamera {
         }
     }
 
-    /// One small step: half of the turn, the move, the other half.
+    /// Does a small step: half of the turn, the move, and the other half.
     fn step(&mut self, input: &FlyInput, speed: f32, seconds: f32) {
         let half_turn = input.turn.clamp(Vec2::NEG_ONE, Vec2::ONE) * (TURN_SPEED * seconds * 0.5);
         self.turn(half_turn);
@@ -160,8 +162,8 @@ impl FlyCamera {
         self.turn(half_turn);
     }
 
-    /// Turns by angles to the right and upward in the picture, in radians: where the camera has a roll, about axes that
-    /// have it, too.
+    /// Turns by angles to the right and upward in the picture, in radians. If the camera has a roll, the axes
+    /// are rolled too.
     fn turn(&mut self, angles: Vec2) {
         if angles == Vec2::ZERO {
             return;
@@ -172,7 +174,7 @@ impl FlyCamera {
         self.pitch = (self.pitch + raised).clamp(-MAX_PITCH, MAX_PITCH);
     }
 
-    /// The camera with its lens, for a picture of the given aspect (width over height).
+    /// Returns the camera with its lens, for a picture of the given aspect (width over height).
     pub fn camera(&self, settings: &CameraSettings, aspect: f32) -> Camera {
         let camera = Camera::from(self.perspective(settings, aspect));
         match settings.height {
@@ -181,10 +183,10 @@ impl FlyCamera {
         }
     }
 
-    /// The camera with a perspective lens, whatever `settings.height` says, for a picture of the given aspect (width over
-    /// height).
+    /// Returns the camera with a perspective lens, regardless of `settings.height`, for a picture of the
+    /// given aspect (width over height).
     pub fn perspective(&self, settings: &CameraSettings, aspect: f32) -> PerspectiveCamera {
-        // The vertical is exact, and serves wherever the camera does not look along it.
+        // The vertical is exact, and usable unless the camera looks along it.
         let is_level = self.roll == 0.0 && self.pitch.abs() <= MAX_PITCH;
         PerspectiveCamera {
             eye: self.position,
@@ -217,7 +219,7 @@ mod tests {
         let coarse = fly(10, 2.0, &input);
         for frames in [20, 60, 144, 500] {
             let fine = fly(frames, 2.0, &input);
-            // The midpoint steps differ by the square of their length: far below a millimetre.
+            // The midpoint steps differ by the square of their length, far below a millimetre.
             assert!((fine.position - coarse.position).length() < 1e-3, "{frames} frames: {fine:?} {coarse:?}");
             assert!((fine.yaw - coarse.yaw).abs() < 1e-4);
         }

@@ -1,5 +1,5 @@
-//! What casts shadows in a scene, by number: instances, and of large meshes clusters of their triangles, so that
-//! culling and the order along the light reach into them.
+//! The casters of a scene, by number: instances, or clusters of triangles of large meshes. Culling and the
+//! order along the light thus work on parts of meshes.
 
 use core::ops::Range;
 
@@ -7,23 +7,23 @@ use glam::{Mat4, Vec3};
 use shadowfit::{Aabb, Boxes};
 use shadowfit_wgpu::Casters;
 
-/// Most triangles of a cluster. Smaller ones are culled better, and cost more draw calls.
+/// Greatest number of triangles in a cluster. Smaller clusters are culled better, but cost more draw calls.
 const CLUSTER_TRIANGLES: usize = 512;
 
-/// Runs into which the casters of a pass are cut, nearest to the light first: within one they are grouped by what they
-/// are drawn with. More would hide more, and cost more draw calls.
+/// Number of runs into which the casters of a pass are divided, nearest to the light first. Within a run
+/// casters are grouped into draw calls. More runs would hide more casters, but cost more draw calls.
 const RUNS: usize = 16;
 
 /// A part of a primitive's index buffer.
 #[derive(Clone, Debug)]
 pub struct Cluster {
-    /// The part.
+    /// Range of indices.
     pub indices: Range<u32>,
-    /// In the space of the positions, in metres.
+    /// Bounds in the space of the positions, in metres.
     pub bounds: Aabb,
 }
 
-/// Something that casts: an instance, or a cluster of one.
+/// A caster: an instance, or a cluster of one.
 #[derive(Clone, Copy, Debug)]
 struct Caster {
     part: u32,
@@ -31,7 +31,7 @@ struct Caster {
     cluster: u32,
 }
 
-/// Casters that are drawn at once.
+/// Casters of one draw call.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct CasterDraw {
     pub(crate) part: usize,
@@ -46,7 +46,7 @@ pub(crate) struct SceneCasters {
     casters: Vec<Caster>,
     boxes: Vec<Aabb>,
     moves: Vec<bool>,
-    /// Casters of the run that is grouped, with what they are grouped by.
+    /// Casters of the run that is being grouped.
     run: Vec<Caster>,
 }
 
@@ -60,19 +60,19 @@ impl SceneCasters {
         }
     }
 
-    /// Sets all boxes, in world space, in metres: `bounds` gives that of a part's instance and cluster.
+    /// Sets all boxes, in world space, in metres. `bounds` returns the box of a part's instance and cluster.
     pub(crate) fn set_boxes(&mut self, bounds: impl Fn(usize, usize, usize) -> Aabb) {
         for (aabb, caster) in self.boxes.iter_mut().zip(&self.casters) {
             *aabb = bounds(caster.part as usize, caster.instance as usize, caster.cluster as usize);
         }
     }
 
-    /// The casters by number, in world space.
+    /// Returns the casters by number, in world space.
     pub(crate) fn by_number(&self) -> Casters<'_> {
         Casters { moves: &self.moves, ..Casters::fixed(Boxes::world(&self.boxes)) }
     }
 
-    /// Adds each caster's mask to that of its instance; `None` stays for instances that cast nothing.
+    /// Merges each caster's mask into its instance's mask. Instances that cast no shadow stay `None`.
     pub(crate) fn merge_masks(&self, masks: &[u8], of_instances: &mut [Option<u8>]) {
         for (caster, mask) in self.casters.iter().zip(masks) {
             let merged = &mut of_instances[caster.instance as usize];
@@ -80,8 +80,8 @@ impl SceneCasters {
         }
     }
 
-    /// Groups casters, nearest to the light first, into draw calls. `indices` are those of a part's cluster, `instances`
-    /// is called with an instance for each of those that are added.
+    /// Groups casters, sorted nearest to the light first, into draw calls. `indices` returns the indices of a
+    /// part's cluster. `add` is called with each instance that is drawn.
     pub(crate) fn draws(
         &mut self,
         numbers: &[u32],
@@ -104,7 +104,7 @@ impl SceneCasters {
                     Some(last) if is_same && last.indices.end == range.start && last.instances.len() == 1 => {
                         last.indices.end = range.end;
                     }
-                    // The same triangles once more, for another instance.
+                    // The same triangles for another instance.
                     Some(last) if !is_same && last.indices == range => {
                         last.instances.end = add(caster.instance as usize) + 1;
                     }
@@ -118,8 +118,8 @@ impl SceneCasters {
     }
 }
 
-/// The triangles of a mesh in clusters of a few hundred: reordered indices, and the clusters. A mesh that deforms is one
-/// cluster. Indices past the positions panic.
+/// Divides the triangles of a mesh into clusters of a few hundred. Returns reordered indices and the
+/// clusters. A deforming mesh is one cluster. Panics if an index is out of range.
 pub fn clustered(positions: &[Vec3], indices: &[u32], deforms: bool) -> (Vec<u32>, Vec<Cluster>) {
     if deforms {
         let triangles = indices.as_chunks::<3>().0;
@@ -132,7 +132,7 @@ pub fn clustered(positions: &[Vec3], indices: &[u32], deforms: bool) -> (Vec<u32
     (faces.iter().flat_map(|face| face.corners).collect(), clusters)
 }
 
-/// A triangle with three times its middle, by which it is sorted.
+/// A triangle with three times its middle, the sort key.
 #[derive(Clone, Copy, Debug)]
 struct Face {
     middle: Vec3,
@@ -145,7 +145,7 @@ impl Face {
     }
 }
 
-/// Cuts triangles in two at the median of their middles along the longest side, until they are few.
+/// Divides triangles at the median of their middles along the longest side, until there are few enough.
 fn split(positions: &[Vec3], faces: &mut [Face], first: u32) -> Vec<Cluster> {
     let end = first + faces.len() as u32 * 3;
     if faces.len() <= CLUSTER_TRIANGLES {
@@ -167,7 +167,7 @@ fn bounds<'a>(positions: &[Vec3], triangles: impl Iterator<Item = &'a [u32; 3]>)
     Aabb::from_points(triangles.flatten().map(|index| positions[*index as usize])).unwrap_or(Aabb::EMPTY)
 }
 
-/// The world box of a box in the space of a mesh.
+/// Returns the world box of a box in mesh space.
 pub(crate) fn transformed(bounds: &Aabb, matrix: &Mat4) -> Aabb {
     if bounds.is_empty() {
         return Aabb::EMPTY;
@@ -226,10 +226,10 @@ mod tests {
         let mut added = Vec::new();
         let mut draws = Vec::new();
         let numbers = [5, 1, 4, 0, 6, 3];
-        // One run each: nothing is joined.
+        // One caster per run: nothing is joined.
         casters.draws(&numbers, indices, |i| (added.push(i), added.len() - 1).1, &mut draws);
         assert_eq!((draws.len(), added.as_slice()), (6, [2, 0, 1, 0, 3, 0].as_slice()));
-        // Many numbers make runs of several.
+        // Many numbers give runs of several casters.
         let numbers: Vec<u32> = numbers.iter().copied().cycle().take(6 * RUNS).collect();
         added.clear();
         draws.clear();

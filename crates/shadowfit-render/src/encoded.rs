@@ -1,5 +1,5 @@
-//! Display values of pictures on OpenGL, where a texture has no view of another format: a texture of their own, which
-//! linear colours are encoded into once they are drawn.
+//! Display values of pictures on OpenGL, where a texture cannot have a view of another format. Linear colours
+//! are encoded into a separate texture once they are drawn.
 
 use crate::bindings;
 use crate::formats::ENCODED_FORMAT;

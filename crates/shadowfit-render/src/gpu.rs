@@ -11,7 +11,7 @@ use faults::{Faults, watched};
 
 pub use faults::{DeviceFault, hush_lost_devices};
 
-/// An opened device with all that is needed to draw.
+/// An open device and its adapter and queue.
 #[derive(Clone, Debug)]
 pub struct Gpu {
     /// Adapter that the device belongs to.
@@ -23,13 +23,14 @@ pub struct Gpu {
     pub(crate) faults: Arc<Mutex<Faults>>,
 }
 
-/// What a device should have. It works with less, too: the defaults are all that makes a difference.
+/// Features and limits that a device should have. It also works with fewer features. The defaults include
+/// every feature that makes a difference.
 #[derive(Clone, Debug)]
 pub struct Wanted {
-    /// Features, where the adapter has them.
+    /// Features, requested if the adapter has them.
     pub features: wgpu::Features,
-    /// Limits, which the adapter must have; `None` for what its kind guarantees, with as large textures and buffers as it
-    /// allows.
+    /// Limits that the adapter must have. `None` for the guaranteed limits of its kind, with the largest
+    /// textures and buffers that it allows.
     pub limits: Option<wgpu::Limits>,
 }
 
@@ -41,7 +42,7 @@ impl Default for Wanted {
     }
 }
 
-/// Why no GPU could be opened, with what to do about it.
+/// Reason why no GPU could be opened, with advice.
 #[derive(Debug)]
 pub enum GpuError {
     /// The machine has no such adapter.
@@ -77,7 +78,7 @@ impl Gpu {
         let instance = Self::instance();
         #[cfg(all(target_family = "wasm", feature = "webgl"))]
         {
-            // WebGL2 is the context of a canvas, here one that nobody sees.
+            // WebGL2 is the context of a canvas, here an invisible one.
             let canvas = web_sys::OffscreenCanvas::new(1, 1).ok();
             let surface = canvas.map(|canvas| instance.create_surface(wgpu::SurfaceTarget::OffscreenCanvas(canvas)));
             if let Some(Ok(surface)) = surface {
@@ -88,8 +89,8 @@ impl Gpu {
         Self::of_adapter(adapter, &Wanted::default()).await
     }
 
-    /// Opens the graphics API: Vulkan, Metal or Direct3D 12, unless `WGPU_BACKEND` names others. In browsers the features
-    /// of this crate name it. With both of them it is WebGPU, unless the browser has none.
+    /// Opens the graphics API: Vulkan, Metal or Direct3D 12, unless `WGPU_BACKEND` names others. In browsers
+    /// the features of this crate select it. If both are enabled, it is WebGPU, unless the browser lacks it.
     pub fn instance() -> wgpu::Instance {
         shadowfit_adapter::instance()
     }
@@ -108,7 +109,7 @@ impl Gpu {
         Self::of_adapter(adapter, &Wanted::default()).await
     }
 
-    /// Opens an adapter with as much as is wanted of what it has.
+    /// Opens an adapter with the wanted features and limits that it has.
     ///
     /// # Errors
     ///
@@ -119,7 +120,8 @@ impl Gpu {
                 label: Some("shadowfit"),
                 required_features: adapter.features() & wanted.features,
                 required_limits: wanted.limits.clone().unwrap_or_else(|| usual_limits(&adapter)),
-                // Maps and scenes come and go: what is left in a block of 128 MiB and more keeps the whole of it.
+                // Maps and scenes are created and dropped often. Blocks of 128 MiB and more would be kept for
+                // small leftovers.
                 memory_hints: wgpu::MemoryHints::MemoryUsage,
                 ..Default::default()
             })
@@ -129,32 +131,33 @@ impl Gpu {
         Ok(Self { adapter, device, queue, faults })
     }
 
-    /// Submits work. Where the CPU itself draws, that may take until what was submitted before is drawn, which
-    /// [`own_time`](crate::own_time) leaves out.
+    /// Submits work. If the CPU draws, this may block until earlier work is drawn.
+    /// [`own_time`](crate::own_time) excludes that time.
     pub fn submit(&self, commands: impl IntoIterator<Item = wgpu::CommandBuffer>) {
         let commands: Vec<wgpu::CommandBuffer> = commands.into_iter().collect();
         crate::wait::waiting(|| self.queue.submit(commands));
     }
 
-    /// Until what it returns is dropped, errors of the device are not reported to its handler, which ends the program:
-    /// everything created on a lost device is invalid. The result of the work shows whether it failed.
+    /// Suppresses reports of device errors until the returned value is dropped. The device's error handler
+    /// would end the program, because everything created on a lost device is invalid. The result of the work
+    /// shows whether it failed.
     pub(crate) fn without_reports(&self) -> Unreported {
         let memory = self.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
         let validation = self.device.push_error_scope(wgpu::ErrorFilter::Validation);
         Unreported { _validation: validation, _memory: memory }
     }
 
-    /// Name of the adapter, for titles and reports.
+    /// Returns the adapter's name, for titles and reports.
     pub fn name(&self) -> String {
         self.adapter.get_info().name
     }
 
-    /// Whether the device has compute shaders.
+    /// Returns whether the device has compute shaders.
     pub fn can_compute(&self) -> bool {
         self.device.limits().max_compute_invocations_per_workgroup > 0
     }
 
-    /// Whether pictures are drawn by the CPU.
+    /// Returns whether the CPU draws the pictures.
     pub fn is_software(&self) -> bool {
         self.adapter.get_info().device_type == wgpu::DeviceType::Cpu
     }
@@ -162,26 +165,26 @@ impl Gpu {
 
 fn usual_limits(adapter: &wgpu::Adapter) -> wgpu::Limits {
     let limits = adapter.limits();
-    // WebGL2 has neither compute shaders nor storage buffers; all others have what WebGPU guarantees.
+    // WebGL2 has neither compute shaders nor storage buffers. All others have WebGPU's guaranteed limits.
     let guaranteed = match adapter.get_info().backend {
         wgpu::Backend::Gl => wgpu::Limits::downlevel_webgl2_defaults(),
         _ => wgpu::Limits::default(),
     };
     wgpu::Limits {
-        // Scenes of millions of triangles are uploaded whole to GPUs that ray trace them.
+        // Scenes of millions of triangles are uploaded as a whole to GPUs that ray trace them.
         max_buffer_size: limits.max_buffer_size,
         max_storage_buffer_binding_size: limits.max_storage_buffer_binding_size,
         ..guaranteed.using_resolution(limits)
     }
 }
 
-/// Whether a device is one of OpenGL, whose textures have no views of another format, and are not loaded from where they
-/// have several samples or hold depths; browsers' has no vertex streams of a single element.
+/// Returns whether a device uses OpenGL. Its textures have no views of another format, and shaders cannot
+/// load multisampled or depth textures. In browsers it also lacks vertex streams of a single element.
 pub(crate) fn is_opengl(device: &wgpu::Device) -> bool {
     device.adapter_info().backend == wgpu::Backend::Gl
 }
 
-/// Error scopes, dropped in this order: the last opened first.
+/// Error scopes, dropped in this order: the last one opened first.
 pub(crate) struct Unreported {
     _validation: wgpu::ErrorScopeGuard,
     _memory: wgpu::ErrorScopeGuard,

@@ -7,10 +7,11 @@ use wgpu_profiler::{GpuProfiler, GpuProfilerSettings, GpuTimerQueryResult};
 
 use crate::Gpu;
 
-/// Times passes by the GPU's clock, frame by frame; on adapters without timestamps it times nothing.
+/// Times passes by the GPU's clock, frame by frame. Does nothing on adapters without timestamps.
 ///
-/// In each frame: [`begin`](Self::begin) and [`end`](Self::end) around each pass, [`resolve`](Self::resolve) before the
-/// encoder is submitted, [`end_frame`](Self::end_frame) after that. [`take`](Self::take) has the times some frames later.
+/// In each frame, call [`begin`](Self::begin) and [`end`](Self::end) around each pass,
+/// [`resolve`](Self::resolve) before the encoder is submitted, and [`end_frame`](Self::end_frame) afterwards.
+/// [`take`](Self::take) returns the times some frames later.
 pub struct GpuTimer(Option<GpuProfiler>);
 
 impl fmt::Debug for GpuTimer {
@@ -20,55 +21,55 @@ impl fmt::Debug for GpuTimer {
 }
 
 impl GpuTimer {
-    /// A timer for which at most `pending` frames wait for the GPU; it forgets the oldest one beyond that.
+    /// Creates a timer. At most `pending` frames wait for the GPU; beyond that it forgets the oldest one.
     pub fn new(device: &wgpu::Device, pending: usize) -> Self {
         let has_timestamps = device.features().contains(wgpu::Features::TIMESTAMP_QUERY);
         let settings = GpuProfilerSettings { max_num_pending_frames: pending, ..GpuProfilerSettings::default() };
         Self(has_timestamps.then(|| GpuProfiler::new(device, settings).ok()).flatten())
     }
 
-    /// Reserves the timestamps of a pass, which its descriptor takes from the result.
+    /// Reserves the timestamps of a pass. Its descriptor takes them from the result.
     pub fn begin(&self, label: &str, encoder: &mut wgpu::CommandEncoder) -> Option<GpuProfilerQuery> {
         Some(self.0.as_ref()?.begin_pass_query(label, encoder))
     }
 
-    /// Ends what [`Self::begin`] began, after the pass.
+    /// Ends a query of [`Self::begin`], after the pass.
     pub fn end(&self, query: Option<GpuProfilerQuery>, encoder: &mut wgpu::CommandEncoder) {
         if let (Some(profiler), Some(query)) = (&self.0, query) {
             profiler.end_query(encoder, query);
         }
     }
 
-    /// Records the way of the timestamps back to the CPU: the last thing before an encoder is submitted.
+    /// Records the read-back of the timestamps. Call it last before the encoder is submitted.
     pub fn resolve(&mut self, encoder: &mut wgpu::CommandEncoder) {
         if let Some(profiler) = &mut self.0 {
             profiler.resolve_queries(encoder);
         }
     }
 
-    /// Closes a frame that was submitted.
+    /// Ends a frame that was submitted.
     pub fn end_frame(&mut self, gpu: &Gpu) {
         let Some(profiler) = &mut self.0 else { return };
-        // On a lost device there are no times; reading the picture returns an error.
+        // A lost device has no times. Reading the picture returns an error.
         let _unreported = gpu.without_reports();
         if profiler.end_frame().is_err() {
-            // A query was left open: times would be wrong from here on, so there are none.
+            // A query was left open, so later times would be wrong. Timing is disabled.
             self.0 = None;
         }
     }
 
-    /// The times of the oldest frame that the GPU has finished, once, in seconds on the GPU's clock.
+    /// Returns the times of the oldest frame that the GPU has finished, once, in seconds on the GPU's clock.
     pub fn take(&mut self, gpu: &Gpu) -> Option<Vec<GpuTimerQueryResult>> {
         let profiler = self.0.as_mut()?;
-        // The profiler expects that a buffer that it has mapped stays so, but those of a lost device are destroyed.
+        // The profiler expects its mapped buffers to stay mapped, but a lost device's buffers are destroyed.
         if gpu.lost().is_some() {
             return None;
         }
         profiler.process_finished_frame(gpu.queue.get_timestamp_period())
     }
 
-    /// As [`Self::take`], from the start of the frame's first pass to the end of its last one, in milliseconds; `Some(0)`
-    /// for a frame in which nothing was timed.
+    /// Returns the time like [`Self::take`], from the start of the frame's first pass to the end of its last
+    /// one, in milliseconds. `Some(0)` for a frame without timed passes.
     pub fn take_ms(&mut self, gpu: &Gpu) -> Option<f64> {
         let results = self.take(gpu)?;
         let times = results.iter().filter_map(|result| result.time.as_ref());

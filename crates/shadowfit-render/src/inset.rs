@@ -4,16 +4,16 @@ use glam::Vec3;
 
 use crate::uniform::InsetVertex;
 
-/// Where and how a shadow map is shown in the picture.
+/// A shadow map that is shown in the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Inset {
     /// Left, top, width and height, in pixels.
     pub rectangle: [f32; 4],
-    /// Stored depths shown as black and white.
+    /// Stored depths that are shown as black and white.
     pub depth_range: [f32; 2],
     /// Index of the map that is shown.
     pub map: u32,
-    /// Linear colour of the frame of one pixel around it, which lies inside the rectangle.
+    /// Linear colour of its border, one pixel wide, inside the rectangle.
     pub border: Vec3,
 }
 

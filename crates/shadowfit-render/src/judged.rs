@@ -1,4 +1,4 @@
-//! A picture that was judged against rays, as overlays and marks look it up.
+//! A picture that was judged against rays, as input of overlays and marks.
 
 use glam::DMat4;
 use shadowfit::{Camera, DepthConvention};
@@ -7,29 +7,31 @@ use crate::formats::DEPTH_FORMAT;
 use crate::uniform::JudgedUniform;
 use crate::{Gpu, bindings};
 
-/// A judged picture: of this frame, or of an earlier one, whose classes then stick to the surfaces.
+/// A judged picture of this frame, or of an earlier one whose classes then stick to the surfaces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct JudgedPicture<'a> {
-    /// Class of each pixel, an `R32Uint` of at least [`Self::size`]: bits 0 to 2 are 0 where it was not judged, 1 right,
-    /// 2 false shadow, 3 false light, 4 hole, 5 edge; bit 3 is set where the light reaches it in truth. Other bits are
-    /// ignored.
+    /// Class of each pixel, an `R32Uint` texture of at least [`Self::size`]. Bits 0 to 2 are 0 for not
+    /// judged, 1 right, 2 false shadow, 3 false light, 4 hole, 5 edge. Bit 3 is set if the light reaches the
+    /// pixel in truth. Other bits are ignored.
     pub classes: &'a wgpu::TextureView,
     /// Width and height of the picture, in pixels.
     pub size: [u32; 2],
     /// Camera that it was judged with.
     pub camera: Camera,
-    /// Its depth buffer, of one sample, such as [`ProbeTargets::depth_view`](crate::ProbeTargets::depth_view) of the
-    /// probe that was judged. Surfaces that the judged camera did not see then count as not judged; without it they have
-    /// the class of the surface that hid them, and so they have with an orthographic camera. Not needed where the frame has
-    /// the same camera.
+    /// Its depth buffer, of one sample, for example
+    /// [`ProbeTargets::depth_view`](crate::ProbeTargets::depth_view) of the judged probe. With it, surfaces
+    /// that were hidden from the judged camera count as not judged. Without it, or if the camera is
+    /// orthographic, they get the class of the surface that hid them. Not needed if the frame has the same
+    /// camera.
     pub depth: Option<&'a wgpu::TextureView>,
 }
 
-/// Classes of a picture of `size` pixels, rows from the top, as the texture that [`JudgedPicture::classes`] takes.
+/// Uploads the classes of a picture of `size` pixels, rows from the top, as a texture for
+/// [`JudgedPicture::classes`].
 ///
 /// # Panics
 ///
-/// Where there are fewer classes than pixels.
+/// If there are fewer classes than pixels.
 pub fn classes_texture(gpu: &Gpu, classes: &[u32], size: [u32; 2]) -> wgpu::TextureView {
     let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
     let texture = bindings::plain_texture(&gpu.device, "classes", size, wgpu::TextureFormat::R32Uint, usage);
@@ -38,17 +40,17 @@ pub fn classes_texture(gpu: &Gpu, classes: &[u32], size: [u32; 2]) -> wgpu::Text
     texture.create_view(&Default::default())
 }
 
-/// What binds judged pictures.
+/// Bindings of judged pictures.
 #[derive(Debug)]
 pub(crate) struct JudgedInput {
     pub(crate) layout: wgpu::BindGroupLayout,
     uniform: wgpu::Buffer,
-    /// Shown where there is no judged picture: a pixel that was not judged, and its depth.
+    /// Placeholders if there is no judged picture: a pixel that was not judged, and its depth.
     nothing: [wgpu::TextureView; 2],
     nearest: wgpu::Sampler,
 }
 
-/// How shaders read depth buffers: OpenGL's cannot load from what is bound as depths.
+/// Sample type of depth buffers. OpenGL's shaders cannot load from bindings of depth type.
 pub(crate) const DEPTHS: wgpu::TextureSampleType = wgpu::TextureSampleType::Float { filterable: false };
 
 impl JudgedInput {
@@ -69,7 +71,8 @@ impl JudgedInput {
         }
     }
 
-    /// The bind group of a judged picture, if there is one, for a picture of `size` pixels through a camera.
+    /// Returns the bind group of a judged picture, if there is one, for a picture of `size` pixels through a
+    /// camera.
     pub(crate) fn bind(
         &self,
         gpu: &Gpu,
@@ -88,7 +91,7 @@ impl JudgedInput {
         bindings::group(&gpu.device, LABEL, &self.layout, &resources)
     }
 
-    /// The depth of a picture that shows nothing.
+    /// Returns the depth of a picture without surfaces.
     pub(crate) fn no_depth(&self) -> &wgpu::TextureView {
         &self.nothing[1]
     }
@@ -97,7 +100,7 @@ impl JudgedInput {
 const LABEL: &str = "judged picture";
 
 impl JudgedUniform {
-    /// The uniform of a judged picture, for a picture of `viewport` pixels through a camera.
+    /// Creates the uniform of a judged picture, for a picture of `viewport` pixels through a camera.
     pub fn new(judged: &JudgedPicture<'_>, camera: &Camera, viewport: [u32; 2]) -> Self {
         let clip = |camera: &Camera| camera.clip_from_world(DepthConvention::Reversed).as_dmat4();
         let clip_from_world = clip(&judged.camera) * DMat4::from_translation(camera.eye - judged.camera.eye);
@@ -111,7 +114,8 @@ impl JudgedUniform {
             world_from_ndc: world_from_ndc.as_mat4().to_cols_array_2d(),
             size,
             scale,
-            // The same camera sees the same surfaces, and the shader reads the depths of perspectives alone.
+            // With the same camera the same surfaces are visible. The shader can only use depths of
+            // perspectives.
             near: if reads_depths { judged.camera.near } else { 0.0 },
             far: judged.camera.far,
             viewport: viewport.map(|side| side as f32),

@@ -1,9 +1,9 @@
-//! The renderer of the shadowfit viewer: uploads a CPU scene, draws its casters into a
-//! [`shadowfit_wgpu::ShadowMap`], shades it under a sun and a sky, and reads pictures back. It
-//! needs no window; the viewer, the tests and the report tool all draw with it.
+//! The renderer of the shadowfit viewer. It uploads a CPU scene, draws its casters into a
+//! [`shadowfit_wgpu::ShadowMap`], shades it under a sun and a sky, and reads pictures back. It needs no
+//! window. The viewer, the tests and the report tool all draw with it.
 //!
-//! Everything on the GPU is relative to the camera's eye, so that pictures stay steady far from
-//! the world's origin. Right-handed, y up, metres; the camera's depth is reversed (near 1, far 0).
+//! All positions on the GPU are relative to the camera's eye, so that pictures stay steady far from the
+//! world's origin. Right-handed, y up, metres. The camera's depth is reversed (near 1, far 0).
 
 pub mod attachment;
 pub mod camera;

@@ -19,7 +19,7 @@ impl Line {
     }
 }
 
-/// The twelve edges of a box given by eight corners relative to `origin`: four around one face in
+/// Returns the twelve edges of a box, given by eight corners relative to `origin`: four around one face in
 /// order, then the four opposite them.
 pub fn box_lines(origin: DVec3, corners: &[Vec3; 8], color: Vec4) -> [Line; 12] {
     let edge = |from: usize, to: usize| Line {

@@ -1,4 +1,4 @@
-//! How pipelines are made: what differs between them, and the vertex streams of the scene's parts.
+//! Creation of pipelines: their differences, and the vertex streams of the scene's parts.
 
 use core::mem::offset_of;
 
@@ -6,16 +6,16 @@ use crate::formats::{COLOR_FORMAT, DEPTH_FORMAT, STRIDES};
 use crate::uniform::InstanceData;
 use crate::wait::making;
 
-/// Makes modules, layouts and pipelines.
+/// Creates modules, layouts and pipelines.
 #[derive(Clone, Copy, Debug)]
 pub struct Maker<'a> {
-    /// Where they are made.
+    /// Device for the new objects.
     pub device: &'a wgpu::Device,
     /// Samples per pixel of the camera's passes.
     pub samples: u32,
 }
 
-/// What differs between the pipelines.
+/// Properties that differ between the pipelines.
 #[derive(Clone, Debug)]
 pub struct Shape<'a> {
     /// Name for debuggers.
@@ -24,7 +24,7 @@ pub struct Shape<'a> {
     pub layout: &'a wgpu::PipelineLayout,
     /// Module of both stages.
     pub module: &'a wgpu::ShaderModule,
-    /// Entry points of the vertex and the fragment stage; without the latter depth alone is written.
+    /// Entry points of the vertex and the fragment stage. Without a fragment stage only depth is written.
     pub entries: (&'a str, Option<&'a str>),
     /// Names and values of the module's `override` constants that differ from their defaults; 1 is true.
     pub constants: &'a [(&'a str, f64)],
@@ -32,7 +32,7 @@ pub struct Shape<'a> {
     pub buffers: &'a [Option<wgpu::VertexBufferLayout<'a>>],
     /// Colour targets.
     pub targets: &'a [Option<wgpu::ColorTargetState>],
-    /// Kind of primitives, and the faces that are left out.
+    /// Kind of primitives, and the culled faces.
     pub primitive: wgpu::PrimitiveState,
     /// Whether depth is written, and how it is compared.
     pub depth: Option<wgpu::DepthStencilState>,
@@ -40,28 +40,28 @@ pub struct Shape<'a> {
     pub samples: u32,
 }
 
-/// The target of passes that draw opaque colours.
+/// Target of passes that draw opaque colours.
 pub(crate) const COLOR: [Option<wgpu::ColorTargetState>; 1] =
     [Some(wgpu::ColorTargetState { format: COLOR_FORMAT, blend: None, write_mask: wgpu::ColorWrites::ALL })];
 
-/// The target of passes that draw colours over others by their alpha.
+/// Target of passes that blend colours by their alpha.
 pub(crate) const BLENDED_COLOR: [Option<wgpu::ColorTargetState>; 1] = [Some(wgpu::ColorTargetState {
     format: COLOR_FORMAT,
     blend: Some(wgpu::BlendState::ALPHA_BLENDING),
     write_mask: wgpu::ColorWrites::ALL,
 })];
 
-/// Strips of triangles.
+/// Returns the state for triangle strips.
 pub(crate) fn strips() -> wgpu::PrimitiveState {
     wgpu::PrimitiveState { topology: wgpu::PrimitiveTopology::TriangleStrip, ..Default::default() }
 }
 
-/// Triangles without those of these faces.
+/// Returns the state for triangles with these faces culled.
 pub fn culled(cull_mode: Option<wgpu::Face>) -> wgpu::PrimitiveState {
     wgpu::PrimitiveState { cull_mode, ..Default::default() }
 }
 
-/// The camera's depth, written or not, and how it is compared.
+/// Returns the state of the camera's depth, written or not, with its comparison.
 pub fn depth(write: bool, compare: wgpu::CompareFunction) -> Option<wgpu::DepthStencilState> {
     Some(wgpu::DepthStencilState {
         format: DEPTH_FORMAT,
@@ -73,7 +73,8 @@ pub fn depth(write: bool, compare: wgpu::CompareFunction) -> Option<wgpu::DepthS
 }
 
 impl<'a> Shape<'a> {
-    /// Triangles of one sample without vertices, depth or blending: what fills the picture.
+    /// Returns a shape for passes that fill the picture: triangles of one sample without vertices, depth or
+    /// blending.
     pub fn new(
         label: &'a str,
         layout: &'a wgpu::PipelineLayout,
@@ -96,13 +97,13 @@ impl<'a> Shape<'a> {
 }
 
 impl Maker<'_> {
-    /// A module of WGSL.
+    /// Creates a module from WGSL.
     pub fn module(&self, label: &str, source: String) -> wgpu::ShaderModule {
         let source = wgpu::ShaderSource::Wgsl(source.into());
         making(|| self.device.create_shader_module(wgpu::ShaderModuleDescriptor { label: Some(label), source }))
     }
 
-    /// The layout of bind groups in their order.
+    /// Creates the layout of bind groups in this order.
     pub fn layout(&self, groups: &[&wgpu::BindGroupLayout]) -> wgpu::PipelineLayout {
         let groups: Vec<_> = groups.iter().map(|group| Some(*group)).collect();
         self.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
@@ -112,7 +113,7 @@ impl Maker<'_> {
         })
     }
 
-    /// A pipeline.
+    /// Creates a pipeline.
     pub fn pipeline(&self, shape: &Shape<'_>) -> wgpu::RenderPipeline {
         let compilation_options = wgpu::PipelineCompilationOptions { constants: shape.constants, ..Default::default() };
         let descriptor = wgpu::RenderPipelineDescriptor {
@@ -140,28 +141,29 @@ impl Maker<'_> {
     }
 }
 
-/// What shaders read as an instance's number.
+/// Meaning of an instance's number in shaders.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum InstanceNumber {
-    /// That of its first triangle.
+    /// Number of its first triangle.
     FirstTriangle,
-    /// The map that holds it.
+    /// The map that holds the instance.
     Holder,
 }
 
-/// Which streams of a part have an element for each vertex. Of the others it has a single one.
+/// Optional vertex streams of a part that have an element for each vertex. The others have a single element.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Streams {
-    /// Tangents; zero where there are none.
+    /// Tangents; zero if missing.
     pub tangents: bool,
-    /// Texture coordinates and colours; the origin and white where there are none.
+    /// Texture coordinates and colours; the origin and white if missing.
     pub surface: bool,
 }
 
-/// Number of the stream of instances, which comes after those of vertices.
+/// Slot of the instance stream, after the vertex streams.
 pub(crate) const INSTANCES: u32 = 4;
 
-/// The vertex streams of a part: positions, normals, tangents, texture coordinates with colours, and the instances.
+/// Returns the vertex streams of a part: positions, normals, tangents, texture coordinates with colours, and
+/// the instances.
 pub fn part_buffers(number: InstanceNumber, streams: Streams) -> [Option<wgpu::VertexBufferLayout<'static>>; 5] {
     const POSITIONS: [wgpu::VertexAttribute; 1] = wgpu::vertex_attr_array![0 => Float32x3];
     const NORMALS: [wgpu::VertexAttribute; 1] = wgpu::vertex_attr_array![1 => Float32x3];
@@ -187,14 +189,14 @@ pub fn part_buffers(number: InstanceNumber, streams: Streams) -> [Option<wgpu::V
     ]
 }
 
-/// The streams that the shadow pass reads: positions, texture coordinates with colours, and the instances.
+/// Returns the streams of the shadow pass: positions, texture coordinates with colours, and the instances.
 pub(crate) fn caster_buffers(surface: bool) -> [Option<wgpu::VertexBufferLayout<'static>>; 3] {
     let [positions, _, _, surface, instances] =
         part_buffers(InstanceNumber::FirstTriangle, Streams { tangents: false, surface });
     [positions, surface, instances]
 }
 
-/// Rows of the transform, and the number at an offset.
+/// Returns the rows of the transform, and the number at an offset.
 const fn instance(number: usize) -> [wgpu::VertexAttribute; 4] {
     const ROW: usize = size_of::<[f32; 4]>();
     const ROWS: usize = offset_of!(InstanceData, rows);
@@ -209,7 +211,7 @@ const fn instance(number: usize) -> [wgpu::VertexAttribute; 4] {
     ]
 }
 
-/// A stream of packed instances.
+/// Returns a stream of packed instances.
 pub(crate) fn instances<T>(attributes: &[wgpu::VertexAttribute]) -> wgpu::VertexBufferLayout<'_> {
     wgpu::VertexBufferLayout {
         array_stride: size_of::<T>() as u64,

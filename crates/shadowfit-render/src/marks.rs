@@ -1,5 +1,5 @@
-//! Marks of wrong pixels over any view: a pass finds the nearest wrong pixel in each row, and a second one draws from
-//! these what lies within a few pixels of one.
+//! Marks of wrong pixels over any view. The first pass finds the nearest wrong pixel in each row. The second
+//! pass uses these to draw the pixels within a short distance of a wrong pixel.
 
 use crate::formats::COLOR_FORMAT;
 use crate::gpu::is_opengl;
@@ -9,32 +9,32 @@ use crate::target::RenderTarget;
 use crate::uniform::MarksUniform;
 use crate::{Gpu, bindings, shaders};
 
-/// How wrong pixels of a [`JudgedPicture`](crate::JudgedPicture) are marked, in the
-/// [colours of their classes](shadowfit_params::figures::ERROR_COLORS).
+/// Style of the marks on wrong pixels of a [`JudgedPicture`](crate::JudgedPicture), in the [colours of their
+/// classes](shadowfit_params::figures::ERROR_COLORS).
 ///
-/// Where the frame has the judged camera, its pixels are those of the judged picture. Where it has another, each pixel is
-/// looked up by its depth, so that marks stick to the surfaces; in a [part](crate::Frame::scissor) of a picture, what lies
-/// beyond its border is as it was drawn before. On OpenGL depths of several samples cannot be read: there only pictures of
-/// one sample have marks while the camera is another.
+/// If the frame has the judged camera, its pixels equal those of the judged picture. Otherwise each pixel is
+/// looked up by its depth, so that marks stick to the surfaces. In a [part](crate::Frame::scissor) of a
+/// picture, pixels beyond its border show the earlier content. On OpenGL multisampled depths cannot be read,
+/// so only pictures of one sample have marks while the camera differs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Marks {
-    /// Whether areas of wrong pixels are outlined, three pixels away from them, so that a single one has a ring around
-    /// it; else they are filled, with a pixel around them.
+    /// Whether areas of wrong pixels are outlined at a distance of three pixels, so that a single one has a
+    /// ring around it. Otherwise they are filled, with a margin of one pixel.
     pub outline: bool,
-    /// Opacity, 0..=1, which may change from frame to frame so that marks blink.
+    /// Opacity, 0..=1. Changes from frame to frame make marks blink.
     pub strength: f32,
-    /// Which classes are marked: false shadow, false light, hole, edge.
+    /// Marked classes: false shadow, false light, hole, edge.
     pub classes: [bool; 4],
 }
 
 impl Default for Marks {
-    /// All classes, outlined.
+    /// Returns outlines for all classes.
     fn default() -> Self {
         Self { outline: true, strength: 1.0, classes: [true; 4] }
     }
 }
 
-/// Nearest wrong pixels by row: bits 0 to 3 their distance, 4 to 7 their class; 0 for none.
+/// Nearest wrong pixel per row: bits 0 to 3 its distance, 4 to 7 its class; 0 for none.
 const ROWS_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R8Uint;
 
 /// Pipelines and buffers of the two passes.
@@ -56,7 +56,7 @@ pub(crate) struct PreparedMarks {
 }
 
 impl MarkPasses {
-    /// For targets of `samples` per pixel.
+    /// Creates the passes for targets of `samples` per pixel.
     pub(crate) fn new(device: &wgpu::Device, judged: &JudgedInput, samples: u32) -> Self {
         let layout = |sampled, multisampled| {
             let types = [bindings::UNIFORM, bindings::texture(sampled, multisampled)];
@@ -83,8 +83,8 @@ impl MarkPasses {
         Self { rows_layout, marks_layout, rows, marks, uniform, nearest: None }
     }
 
-    /// Records the first pass, once the scene is drawn. `judged` is the frame's bind group, `no_depth` the depth of a
-    /// picture without surfaces.
+    /// Records the first pass, once the scene is drawn. `judged` is the frame's bind group, `no_depth` the
+    /// depth of a picture without surfaces.
     pub(crate) fn prepare(
         &mut self,
         gpu: &Gpu,
@@ -113,7 +113,7 @@ impl MarkPasses {
         PreparedMarks { pipeline: self.marks.clone(), group: group(&self.marks_layout, &nearest) }
     }
 
-    /// The texture between the passes, of the target's size.
+    /// Returns the texture between the passes, of the target's size.
     fn nearest(&mut self, gpu: &Gpu, size: [u32; 2]) -> wgpu::TextureView {
         let kept = self.nearest.take().filter(|(of, _)| *of == size);
         let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING;
@@ -133,7 +133,7 @@ impl PreparedMarks {
 }
 
 impl MarksUniform {
-    /// The uniform of marks.
+    /// Creates the uniform of marks.
     pub fn new(marks: &Marks) -> Self {
         let bit = |class: usize| if marks.classes[class] { 1 << (class + FIRST_WRONG) } else { 0 };
         Self {
@@ -145,5 +145,5 @@ impl MarksUniform {
     }
 }
 
-/// The number of the first class of wrong pixels, false shadow.
+/// Number of the first class of wrong pixels, false shadow.
 const FIRST_WRONG: usize = 2;

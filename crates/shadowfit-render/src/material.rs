@@ -1,4 +1,4 @@
-//! Materials on the GPU: uniforms, textures with all their levels, samplers, one bind group each.
+//! Materials on the GPU: uniforms, textures with all mip levels, samplers, and one bind group each.
 
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -11,24 +11,24 @@ use crate::uniform::MaterialUniform;
 use crate::upload::Upload;
 use crate::{Gpu, bindings, shaders};
 
-/// Anisotropy of the texture filter: floors seen at a grazing angle stay sharp. Software adapters do without: Mesa's
-/// visits every texel that a pixel covers, which takes seconds for a single sliver seen edge-on.
+/// Anisotropy of the texture filter, which keeps floors sharp at grazing angles. Not used on software
+/// adapters: Mesa's visits every texel that a pixel covers, which takes seconds for a single edge-on sliver.
 const ANISOTROPY: u16 = 8;
 
-/// Name of what makes the levels of textures, for debuggers.
+/// Debug label of the objects that create texture levels.
 const LEVELS: &str = "texture levels";
 
-/// A texture of colours that are filtered, and what samples it.
+/// Bindings of a filtered colour texture and its sampler.
 const COLORS: wgpu::BindingType = bindings::texture(wgpu::TextureSampleType::Float { filterable: true }, false);
 const SAMPLER: wgpu::BindingType = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
 
-/// Layout of a material's bind group, the same in the shaded and the shadow pass.
+/// Creates the layout of a material's bind group, the same in the shaded and the shadow pass.
 pub fn material_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
     let types = [bindings::UNIFORM, COLORS, SAMPLER, COLORS, SAMPLER];
     bindings::layout(device, "material", wgpu::ShaderStages::FRAGMENT, &types)
 }
 
-/// Makes the bind group of every material of a scene, with textures of at most `side` texels a side.
+/// Creates the bind group of every material of a scene, with textures of at most `side` texels per side.
 pub(crate) fn upload_materials(
     upload: &Upload<'_>,
     layout: &wgpu::BindGroupLayout,
@@ -42,7 +42,7 @@ pub(crate) fn upload_materials(
 struct Uploader<'a> {
     upload: &'a Upload<'a>,
     scene: &'a Scene,
-    /// Most texels of a texture's side.
+    /// Greatest side of a texture, in texels.
     side: u32,
     levels: LevelMaker,
     views: HashMap<(usize, bool), wgpu::TextureView>,
@@ -55,12 +55,12 @@ impl<'a> Uploader<'a> {
         let side = side.min(device.limits().max_texture_dimension_2d);
         let levels = LevelMaker::new(device);
         let pixel = Image { name: String::new(), width: 1, height: 1, rgba: vec![255; 4] };
-        // Without memory for a single pixel, nothing of it is used.
+        // If there is no memory for a single pixel, the texture is never used.
         let white = upload_image(upload, &levels, &pixel, false, side).unwrap_or_else(|| single_pixel(device));
         Self { upload, scene, side, levels, views: HashMap::new(), white }
     }
 
-    /// The view of a texture's image; white where there is none.
+    /// Returns the view of a texture's image; white if it is missing.
     fn view(&mut self, texture: Option<Texture>, srgb: bool) -> wgpu::TextureView {
         let Some((index, image)) = texture.and_then(|t| Some((t.image, self.scene.images.get(t.image)?))) else {
             return self.white.clone();
@@ -95,7 +95,7 @@ fn sampler(gpu: &Gpu, texture: Option<Texture>) -> wgpu::Sampler {
         Wrap::Clamp => wgpu::AddressMode::ClampToEdge,
     });
     let nearest = texture.is_some_and(|t| t.nearest);
-    // Anisotropy asks for linear filters throughout.
+    // Anisotropy requires linear filters throughout.
     let anisotropy_clamp = if nearest || gpu.is_software() { 1 } else { ANISOTROPY };
     gpu.device.create_sampler(&wgpu::SamplerDescriptor {
         label: Some("material"),
@@ -109,7 +109,7 @@ fn sampler(gpu: &Gpu, texture: Option<Texture>) -> wgpu::Sampler {
     })
 }
 
-/// Uploads an image with all its levels, halved until no side has more texels than `side`; `None` without memory.
+/// Uploads an image with all mip levels, halved until no side exceeds `side` texels. `None` without memory.
 fn upload_image(
     upload: &Upload<'_>,
     levels: &LevelMaker,
@@ -137,7 +137,7 @@ fn upload_image(
     Some(texture.create_view(&wgpu::TextureViewDescriptor::default()))
 }
 
-/// A texture of whatever colour.
+/// Creates a texture of an arbitrary colour.
 fn single_pixel(device: &wgpu::Device) -> wgpu::TextureView {
     let texture = device.create_texture(&wgpu::TextureDescriptor {
         label: Some("no memory"),
@@ -166,7 +166,7 @@ fn halved_to_fit(image: &Image, limit: u32) -> Cow<'_, Image> {
     image
 }
 
-/// Draws each level of a texture from the one above it.
+/// Draws each mip level of a texture from the level above it.
 struct LevelMaker {
     sampler: wgpu::Sampler,
     layout: wgpu::BindGroupLayout,

@@ -1,45 +1,46 @@
-//! What surfaces show instead of their plain shading.
+//! Overlays that surfaces show instead of their plain shading.
 
 use shadowfit_params::tool::ViewMode;
 
-/// What the surfaces show. Each but [`Overlay::None`] has shaders of its own, which are made when it is first shown.
+/// Overlay of the surfaces. Each except [`Overlay::None`] has its own shaders, created when it is first
+/// shown.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Overlay {
-    /// Their shading alone.
+    /// Only shading.
     #[default]
     None,
-    /// The map that each point reads, in the colours [`MAP_TINTS`](shadowfit_params::figures::MAP_TINTS); where it reads two,
-    /// both mixed by their weights. What no map covers keeps its own colour.
+    /// The map that each point reads, in the colours [`MAP_TINTS`](shadowfit_params::figures::MAP_TINTS). If
+    /// a point reads two, both are mixed by their weights. Points that no map covers keep their colour.
     MapTint,
     /// Screen pixels per texel along the worse axis
-    /// ([`pixels_per_texel`](shadowfit::diagnostics::pixels_per_texel)) of the map that weighs more in a point's shadow, as
-    /// [`pixels_per_texel_color`](shadowfit_params::figures::pixels_per_texel_color), darker where there is less light. What no
-    /// map covers is hatched in grey.
+    /// ([`pixels_per_texel`](shadowfit::diagnostics::pixels_per_texel)) of the map with the greater weight in
+    /// a point's shadow, as [`pixels_per_texel_color`](shadowfit_params::figures::pixels_per_texel_color),
+    /// darker in the shade. Points that no map covers are hatched in grey.
     PixelsPerTexel,
-    /// The texels of the map that weighs more in a point's shadow, as a checkerboard with lines in the map's tint; where
-    /// they are less than six pixels wide, blocks of 4, 16, 64 and so on texels a side. What no map covers keeps its own
-    /// colour.
+    /// The texels of the map with the greater weight in a point's shadow, as a checkerboard with lines in the
+    /// map's tint. Texels below six pixels are joined to blocks of 4, 16, 64 and so on texels per side.
+    /// Points that no map covers keep their colour.
     TexelGrid,
-    /// The shadows that rays found ([`Frame::judged`](crate::Frame::judged)). What was not judged, though it faces the
-    /// light, has the maps' shadows and is hatched.
+    /// The shadows that rays found ([`Frame::judged`](crate::Frame::judged)). Pixels that face the light but
+    /// were not judged have the maps' shadows and are hatched.
     Truth,
-    /// The picture in dim grey, and wrong pixels of [`Frame::judged`](crate::Frame::judged) in the
-    /// [colours of their classes](shadowfit_params::figures::ERROR_COLORS).
+    /// The picture in dim grey, and wrong pixels of [`Frame::judged`](crate::Frame::judged) in the [colours
+    /// of their classes](shadowfit_params::figures::ERROR_COLORS).
     Error,
-    /// The picture in grey. Pixels of which the maps were not sure, and whose rays were traced, and what faces the light and
-    /// was left to the filter, have the [`EDGE_COLORS`](shadowfit_params::figures::EDGE_COLORS).
+    /// The picture in grey. Pixels whose texels were not in agreement, so that rays were traced, and facing
+    /// pixels that were left to the filter have the [`EDGE_COLORS`](shadowfit_params::figures::EDGE_COLORS).
     Traced,
-    /// Which casters the maps hold: an instance has the tint of the first map that holds it, or is dark and hatched if it
-    /// is in none. Blended surfaces, which cast nothing, are grey.
+    /// The casters that the maps hold. An instance has the tint of the first map that holds it, or is dark
+    /// and hatched if no map does. Blended surfaces, which cast no shadow, are grey.
     Casters,
 }
 
 impl Overlay {
-    /// All that have shaders of their own.
+    /// All overlays with their own shaders.
     pub const ALL: [Self; 7] =
         [Self::MapTint, Self::PixelsPerTexel, Self::TexelGrid, Self::Truth, Self::Error, Self::Traced, Self::Casters];
 
-    /// What the surfaces show in a view of the camera.
+    /// Returns the overlay of a view mode.
     pub const fn of(view: ViewMode) -> Self {
         match view {
             ViewMode::Truth => Self::Truth,
@@ -52,7 +53,7 @@ impl Overlay {
         }
     }
 
-    /// The WGSL that colours a visible point, by its function `overlaid`.
+    /// Returns the WGSL that colours a visible point, in its function `overlaid`.
     pub(crate) const fn wgsl(self) -> &'static str {
         match self {
             Self::None => "",
@@ -66,12 +67,12 @@ impl Overlay {
         }
     }
 
-    /// Whether the sky is grey behind it, since its colours have a meaning that a blue sky has not.
+    /// Returns whether the sky behind it is grey, because blue would conflict with the overlay's colours.
     pub const fn has_gray_sky(self) -> bool {
         matches!(self, Self::PixelsPerTexel | Self::Error | Self::Traced | Self::Casters)
     }
 
-    /// Whether it shows a judged picture.
+    /// Returns whether it shows a judged picture.
     pub const fn is_judged(self) -> bool {
         matches!(self, Self::Truth | Self::Error)
     }

@@ -1,4 +1,4 @@
-//! A part of a scene on the GPU: the buffers of one primitive, and what selects its pipelines.
+//! A part of a scene on the GPU: the buffers of one primitive, and its pipeline key.
 
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -14,16 +14,16 @@ use crate::maker::Streams;
 use crate::unrolled::{Numbering, Unrolled};
 use crate::upload::Upload;
 
-/// One primitive with all its instances (a deformed one has a part of its own per instance).
+/// One primitive with all its instances. A deformed primitive has a separate part for each instance.
 #[derive(Clone, Debug)]
 pub(crate) struct Part {
     /// Positions, normals, tangents, and texture coordinates with colours.
     pub(crate) streams: [wgpu::Buffer; 4],
-    /// Which of the last two have an element for each vertex.
+    /// Which of the last two streams have an element for each vertex.
     pub(crate) has: Streams,
     pub(crate) indices: wgpu::Buffer,
     pub(crate) index_count: u32,
-    /// Where probes number triangles by their vertices.
+    /// Unrolled vertices, if probes number triangles by their vertices.
     pub(crate) unrolled: Option<Unrolled>,
     /// Its triangles in the order of their clusters, for the shadow passes.
     pub(crate) caster_indices: wgpu::Buffer,
@@ -39,7 +39,7 @@ pub(crate) struct Part {
     pub(crate) members: Vec<usize>,
 }
 
-/// What decides the buffers of rigid parts.
+/// Properties that determine the buffers of rigid parts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct TwinKey {
     geometry: *const Geometry,
@@ -57,17 +57,17 @@ impl TwinKey {
     }
 }
 
-/// What selects a part's pipeline, in every pass.
+/// Properties that select a part's pipeline, in every pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[expect(clippy::struct_excessive_bools, reason = "each is an independent property of the part")]
 pub struct PartKey {
-    /// Whether fragments below the cutoff are absent.
+    /// Whether fragments below the cutoff are discarded.
     pub masked: bool,
-    /// Whether it is blended over what lies behind.
+    /// Whether it is blended over the surfaces behind it.
     pub blended: bool,
     double_sided: bool,
     mirrored: bool,
-    /// Which of its streams have an element for each vertex.
+    /// Streams that have an element for each vertex.
     pub streams: Streams,
 }
 
@@ -87,13 +87,13 @@ impl Part {
         let (tangents, surface) = (tangents(primitive, has), surface(primitive, has));
         let vertices: [&[u8]; 4] =
             [cast_slice(positions), cast_slice(normals), cast_slice(&tangents), cast_slice(&surface)];
-        // Passes fit what deforms to them for rays.
+        // Passes refit the rays' deforming meshes from this buffer.
         let read = if deforms { wgpu::BufferUsages::STORAGE } else { wgpu::BufferUsages::empty() };
         // Blended surfaces are not probed.
         let is_unrolled = material.alpha != AlphaMode::Blend && Numbering::of(device) == Numbering::Vertices;
         let is_each = [true, true, has.tangents, has.surface];
         let each = [0, 1, 2, 3].map(|stream| is_each[stream].then_some(vertices[stream]));
-        // What casts nothing is not cut, and neither is what deforms.
+        // Parts that cast no shadow or deform are not divided into clusters.
         let is_whole = deforms || casting == Casting::Nothing;
         let (caster_indices, clusters) = clustered(positions, indices, is_whole);
         let index = |indices: &[u32]| upload.buffer(wgpu::BufferUsages::INDEX, cast_slice(indices));
@@ -116,7 +116,8 @@ impl Part {
         }
     }
 
-    /// The part of a rigid primitive with the same geometry and [`TwinKey`], with which it shares its buffers.
+    /// Returns the part of a rigid primitive with the same geometry and [`TwinKey`]. Both share their
+    /// buffers.
     pub(crate) fn twin(&self, scene: &Scene, primitive: &Primitive, mirrored: bool) -> Self {
         let material = &scene.materials[primitive.material];
         Self {
@@ -130,12 +131,12 @@ impl Part {
         }
     }
 
-    /// Whether some of the part casts.
+    /// Returns whether any of the part casts shadows.
     pub(crate) fn casts(&self) -> bool {
         self.casting != Casting::Nothing
     }
 
-    /// Whether it is blended over the surfaces behind it.
+    /// Returns whether it is blended over the surfaces behind it.
     pub(crate) fn is_blended(&self) -> bool {
         self.alpha == AlphaMode::Blend
     }
@@ -152,28 +153,29 @@ impl PartKey {
         }
     }
 
-    /// The constants of the WGSL of [materials](crate::shaders::material).
+    /// Returns the constants of the WGSL of [materials](crate::shaders::material).
     pub fn constants(self) -> [(&'static str, f64); 1] {
         [("MASKED", f64::from(self.masked))]
     }
 
-    /// Back faces of single-sided parts are left out; a mirrored part's back is its front.
+    /// Returns the culled faces: back faces of single-sided parts. A mirrored part's back is its front.
     pub fn cull_mode(self) -> Option<wgpu::Face> {
         (!self.double_sided).then(|| self.back())
     }
 
-    /// The front as the rasteriser names it.
+    /// Returns the front face in the rasteriser's terms.
     pub fn front(self) -> wgpu::Face {
         if self.mirrored { wgpu::Face::Back } else { wgpu::Face::Front }
     }
 
-    /// The back as the rasteriser names it.
+    /// Returns the back face in the rasteriser's terms.
     pub fn back(self) -> wgpu::Face {
         if self.mirrored { wgpu::Face::Front } else { wgpu::Face::Back }
     }
 }
 
-/// Which streams get an element for each vertex: all on OpenGL, where those of browsers have no single elements.
+/// Returns the streams that get an element for each vertex: all on OpenGL, which lacks single elements in
+/// browsers.
 fn streams(device: &wgpu::Device, primitive: &Primitive) -> Streams {
     let has_all = is_opengl(device);
     Streams {
@@ -182,13 +184,13 @@ fn streams(device: &wgpu::Device, primitive: &Primitive) -> Streams {
     }
 }
 
-/// Tangents of each vertex, or of all.
+/// Returns the tangents of each vertex, or a single one for all.
 fn tangents(primitive: &Primitive, has: Streams) -> Cow<'_, [Vec4]> {
     let count = if has.tangents { primitive.positions.len() } else { 1 };
     if primitive.tangents.is_empty() { vec![Vec4::ZERO; count].into() } else { (&primitive.tangents).into() }
 }
 
-/// Texture coordinates and colours of each vertex, or those of all.
+/// Returns texture coordinates and colours of each vertex, or a single element for all.
 fn surface(primitive: &Primitive, has: Streams) -> Vec<[f32; 6]> {
     let element = |index: usize| {
         let uv = primitive.uvs.get(index).copied().unwrap_or(Vec2::ZERO);

@@ -1,5 +1,5 @@
-//! The render pipelines, and the layouts that they share. Those that read the shadow map are rebuilt when its shaders
-//! change; those of parts are built when the first part needs them.
+//! The render pipelines, and the layouts that they share. Pipelines that read the shadow map are rebuilt when
+//! its shaders change. Pipelines of parts are built when the first part needs them.
 
 mod of_map;
 
@@ -17,7 +17,7 @@ pub(crate) use of_map::{Drawn, MapPipelines};
 /// Bind group layouts of this crate.
 #[derive(Debug)]
 pub(crate) struct Layouts {
-    /// The uniform of a frame, and the factors of its picture, for what is lit.
+    /// The uniform of a frame and the factors of its picture, for shaded passes.
     pub(crate) frame: wgpu::BindGroupLayout,
     /// A uniform: of a frame, or of a pass that needs no frame.
     pub(crate) uniform: wgpu::BindGroupLayout,
@@ -33,9 +33,9 @@ pub(crate) struct Pipelines {
     sky_gray: wgpu::RenderPipeline,
     pub(crate) lines: wgpu::RenderPipeline,
     pub(crate) quads: wgpu::RenderPipeline,
-    /// Where display values are no view of the picture.
+    /// Used if display values are not a view of the picture.
     pub(crate) encoding: Option<Encoding>,
-    /// Those that read or draw the shadow map.
+    /// Pipelines that read or draw the shadow map.
     pub(crate) of_map: MapPipelines,
 }
 
@@ -51,7 +51,7 @@ impl Layouts {
     }
 }
 
-/// The uniform of a frame, and what fragments read beside it.
+/// Creates the layout of a frame's uniform and of the factors that fragments read.
 fn frame_layout(device: &wgpu::Device, [uniform, factors]: [wgpu::BindingType; 2]) -> wgpu::BindGroupLayout {
     let entry = |binding, visibility, ty| wgpu::BindGroupLayoutEntry { binding, visibility, ty, count: None };
     let entries =
@@ -73,7 +73,7 @@ impl Pipelines {
         }
     }
 
-    /// Pipeline of the sky behind an overlay.
+    /// Returns the pipeline of the sky behind an overlay.
     pub(crate) fn sky(&self, overlay: Overlay) -> &wgpu::RenderPipeline {
         if overlay.has_gray_sky() { &self.sky_gray } else { &self.sky }
     }

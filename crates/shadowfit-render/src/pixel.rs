@@ -1,4 +1,4 @@
-//! The facts of one pixel on their way from the GPU, without waiting.
+//! The data of one pixel, read back from the GPU without waiting.
 
 use shadowfit_gpu::{MapState, Mapping};
 
@@ -6,14 +6,14 @@ use crate::Gpu;
 use crate::probe::ProbePixel;
 use crate::read_back::ReadError;
 
-/// Which pixel is asked about, and which texels.
+/// The pixel and the texels to read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PixelQuery {
     /// Width and height of the picture, in pixels.
     pub size: [u32; 2],
-    /// Column and row of the pixel, from the left top; the nearest one for what lies beside the picture.
+    /// Column and row of the pixel, from the left top, clamped to the picture.
     pub pixel: [u32; 2],
-    /// Texels of a map to be read too.
+    /// Texels of a map to read as well.
     pub texels: Option<TexelBlock>,
 }
 
@@ -22,8 +22,8 @@ pub struct PixelQuery {
 pub struct TexelBlock {
     /// Index of the map.
     pub map: usize,
-    /// Column and row of the texel in the middle, from the left top of the map as it is looked up, wherever it is
-    /// stored.
+    /// Column and row of the texel in the middle, from the left top of the map as it is looked up, regardless
+    /// of where it is stored.
     pub texel: [i32; 2],
     /// Texels on each side of it, at most [`Self::MAX_RADIUS`].
     pub radius: u32,
@@ -33,44 +33,46 @@ impl TexelBlock {
     /// Greatest radius, in texels.
     pub const MAX_RADIUS: u32 = 31;
 
-    /// Width and height, in texels.
+    /// Returns width and height, in texels.
     pub fn side(&self) -> u32 {
         self.radius.min(Self::MAX_RADIUS) * 2 + 1
     }
 }
 
-/// What is known of one pixel.
+/// Data of one pixel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PixelFacts {
     /// The pixel, and the texels that were read.
     pub query: PixelQuery,
-    /// The triangle that it shows and the light that reaches it through the maps, as a
-    /// [probe](crate::Renderer::probe) of the whole picture has it; `None` for the sky.
+    /// The visible triangle and the light that reaches it through the maps, as in a
+    /// [probe](crate::Renderer::probe) of the whole picture. `None` for the sky.
     pub seen: Option<ProbePixel>,
-    /// Depths that the map holds, rows from the top: those of [`PixelQuery::texels`], beyond a border the texel at it.
-    /// Empty where no texels were asked for, or the map does not exist.
+    /// Depths of [`PixelQuery::texels`], rows from the top. Beyond a border, the border texel repeats. Empty
+    /// if no texels were queried, or the map does not exist.
     pub depths: Vec<f32>,
 }
 
-/// Facts of a pixel that the GPU is still finding.
+/// Data of a pixel that the GPU is still computing.
 #[derive(Debug)]
 pub struct PixelRead {
     query: PixelQuery,
-    /// Whether texels were found to be read.
+    /// Whether there are texels to read.
     has_depths: bool,
     buffer: wgpu::Buffer,
     mapping: Mapping,
     is_taken: bool,
 }
 
-/// Format of the depths of a block of texels: the bits of floats, which not all devices can draw to.
+/// Format of the depths of a block of texels: the bits of floats, because not all devices can draw to float
+/// textures.
 pub(crate) const BLOCK_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
 
-/// Bytes between rows of depths in the buffer, and before the first: the least that textures can be copied with.
+/// Bytes between rows of depths in the buffer, and before the first row: the smallest pitch for copying
+/// textures.
 pub(crate) const ROW: u32 = wgpu::COPY_BYTES_PER_ROW_ALIGNMENT;
 
 impl PixelRead {
-    /// A buffer for the facts: the probed pixel at its start, rows of depths from [`ROW`] on.
+    /// Creates a buffer for the data: the probed pixel at its start, rows of depths from [`ROW`] on.
     pub(crate) fn new(device: &wgpu::Device, query: PixelQuery, has_depths: bool) -> Self {
         let rows = if has_depths { query.texels.map_or(0, |block| block.side()) } else { 0 };
         let buffer = device.create_buffer(&wgpu::BufferDescriptor {
@@ -86,12 +88,13 @@ impl PixelRead {
         &self.buffer
     }
 
-    /// Has the buffer mapped, once what fills it is submitted.
+    /// Maps the buffer, once the commands that fill it are submitted.
     pub(crate) fn map(&self) {
         self.mapping.map(&self.buffer);
     }
 
-    /// The facts, once the GPU has found them: `None` before that, and after they were taken. Does not wait.
+    /// Returns the data, once the GPU has computed them. `None` before that, and after they were taken. Does
+    /// not wait.
     ///
     /// # Errors
     ///

@@ -1,5 +1,5 @@
-//! What the renderer itself computed for each pixel: the visible triangle and the shadow factor. Measurements use
-//! these and not colours; the pixel's exact position follows from the triangle.
+//! The renderer's own results for each pixel: the visible triangle and the shadow factor. Measurements use
+//! these instead of colours. The pixel's exact position follows from the triangle.
 
 use core::fmt;
 
@@ -15,22 +15,22 @@ pub const PROBE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Uint;
 /// One pixel of a [`Probe`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ProbePixel {
-    /// The visible triangle: its number in the scene's [`triangles`](shadowfit_scene::Pose::triangles), those of
-    /// blended surfaces left out.
+    /// The visible triangle: its number in the scene's [`triangles`](shadowfit_scene::Pose::triangles),
+    /// without blended surfaces.
     pub triangle: u32,
     /// Filtered share of the light, 0..=1, as shaded.
     pub factor: f32,
 }
 
 impl ProbePixel {
-    /// A pixel of the target; `None` for the sky.
+    /// Decodes a pixel of the target; `None` for the sky.
     pub(crate) fn of([triangle, factor]: [u32; 2]) -> Option<Self> {
         Some(Self { triangle: triangle.checked_sub(1)?, factor: f32::from_bits(factor) })
     }
 }
 
-/// All pixels of a picture, rows from the top; `None` where the sky is seen. Blended surfaces are
-/// not there: what lies behind them is.
+/// All pixels of a picture, rows from the top; `None` for the sky. Blended surfaces are left out, so that the
+/// surfaces behind them are recorded.
 #[derive(Clone, Debug)]
 pub struct Probe {
     /// Width and height, in pixels.
@@ -39,10 +39,10 @@ pub struct Probe {
     pub pixels: Vec<Option<ProbePixel>>,
 }
 
-/// Why a frame could not be probed.
+/// Reason why a frame could not be probed.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ProbeError {
-    /// A fit does not suit the shadow map.
+    /// A map does not match the shadow map.
     ShadowMap(ShadowMapError),
     /// The probe could not be read back.
     Read(ReadError),
@@ -83,7 +83,7 @@ pub struct ProbeTargets {
 }
 
 impl ProbeTargets {
-    /// Makes targets of at least 1×1 pixels.
+    /// Creates targets of at least 1×1 pixels.
     pub fn new(device: &wgpu::Device, size: [u32; 2]) -> Self {
         let limit = device.limits().max_texture_dimension_2d;
         let size = size.map(|side| side.clamp(1, limit));
@@ -98,7 +98,7 @@ impl ProbeTargets {
         Self { size, texture: pixels, view, depth }
     }
 
-    /// The depth buffer of the probe that was drawn last: reversed, 0 where there is sky. Shaders can load it.
+    /// Returns the depth buffer of the last probe: reversed, 0 for the sky. Shaders can load it.
     pub fn depth_view(&self) -> &wgpu::TextureView {
         &self.depth
     }
@@ -112,11 +112,11 @@ impl ProbeTargets {
         Ok(self.probe(&ReadBack::new(gpu, &self.texture, self.size, 8).wait(gpu)?))
     }
 
-    /// The same, and lets a browser do other things meanwhile.
+    /// Reads the probe like [`Self::read`]. A browser can do other work meanwhile.
     ///
     /// # Errors
     ///
-    /// As [`Self::read`].
+    /// As for [`Self::read`].
     pub async fn arrive(&self, gpu: &Gpu) -> Result<Probe, ReadError> {
         Ok(self.probe(&ReadBack::new(gpu, &self.texture, self.size, 8).arrive(gpu).await?))
     }

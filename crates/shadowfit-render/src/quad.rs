@@ -4,26 +4,26 @@ use glam::{Vec2, Vec4};
 
 use crate::uniform::QuadVertex;
 
-/// A filled convex quadrilateral with smooth edges, drawn over the picture. A side that joins a corner with an equal one
-/// makes it a triangle.
+/// A filled convex quadrilateral with smooth edges, drawn over the picture. If two neighbouring corners are
+/// equal, it is a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quad {
-    /// Corners in order around it, either way, in pixels from the left top corner of the picture.
+    /// Corners in either winding order, in pixels from the left top corner of the picture.
     pub corners: [Vec2; 4],
     /// Linear colour and alpha.
     pub color: Vec4,
 }
 
 impl Quad {
-    /// A rectangle: left, top, width and height, in pixels.
+    /// Returns a rectangle: left, top, width and height, in pixels.
     pub fn rectangle([x, y, width, height]: [f32; 4], color: Vec4) -> Self {
         let [left, top, right, bottom] = [x, y, x + width, y + height];
         let corners = [Vec2::new(left, top), Vec2::new(right, top), Vec2::new(right, bottom), Vec2::new(left, bottom)];
         Self { corners, color }
     }
 
-    /// The outline of a rectangle (left, top, width and height, in pixels): four rectangles inside of it, of `line`
-    /// pixels that do not overlap. Rectangles narrower than twice that are filled.
+    /// Returns the outline of a rectangle (left, top, width and height, in pixels): four non-overlapping
+    /// rectangles inside of it, `line` pixels wide. Rectangles narrower than twice that are filled.
     pub fn outline([x, y, width, height]: [f32; 4], line: f32, color: Vec4) -> [Self; 4] {
         let (across, down) = (line.min(width * 0.5), line.min(height * 0.5));
         let between = height - 2.0 * down;
@@ -45,7 +45,7 @@ impl Quad {
 mod tests {
     use super::*;
 
-    /// Area of a rectangle, in pixels².
+    /// Returns the area of a rectangle, in square pixels.
     fn area(quad: &Quad) -> f32 {
         let size = quad.corners[2] - quad.corners[0];
         size.x * size.y

@@ -1,4 +1,5 @@
-//! The casters of a scene for rays on the GPU: the same triangles and cut-outs that are drawn into the shadow maps.
+//! The casters of a scene for rays on the GPU: the same triangles and cut-outs that are drawn into the shadow
+//! maps.
 
 use core::ops::Range;
 use std::collections::HashMap;
@@ -20,7 +21,7 @@ const POSITION_STRIDE: u32 = 12;
 #[derive(Debug)]
 pub(crate) struct SceneRays {
     pub(crate) scene: RayScene,
-    /// The mesh of each part; `None` where it casts nothing.
+    /// The mesh of each part; `None` if it casts no shadow.
     meshes: Vec<Option<MeshId>>,
     instances: Vec<RayInstance>,
     origin: DVec3,
@@ -33,7 +34,8 @@ pub(crate) struct RayPart<'a> {
 }
 
 impl SceneRays {
-    /// Of the parts of a scene, in their order. `origin` is the world position that everything is relative to, in metres.
+    /// Creates the casters from the parts of a scene, in their order. `origin` is the world position that all
+    /// positions are relative to, in metres.
     pub(crate) fn new<'a>(
         gpu: &Gpu,
         scene: &Scene,
@@ -71,7 +73,8 @@ impl SceneRays {
         Ok(Self { scene: rays, meshes, instances: Vec::new(), origin })
     }
 
-    /// Moves everything to a pose: the part of each instance, where it is, and its world box where it deforms.
+    /// Moves all instances to a pose, given as the part of each instance, its transform, and its world box if
+    /// it deforms.
     pub(crate) fn set_instances(
         &mut self,
         instances: impl Iterator<Item = (usize, Mat4, Option<Aabb>)>,
@@ -88,7 +91,7 @@ impl SceneRays {
         self.scene.set_instances(self.origin, &self.instances)
     }
 
-    /// Fits what deforms to the positions that its part's vertex buffer has.
+    /// Refits deforming meshes to the positions in their parts' vertex buffers.
     pub(crate) fn refit<'a>(
         &mut self,
         gpu: &Gpu,
@@ -105,7 +108,7 @@ impl SceneRays {
     }
 }
 
-/// The alpha of an image; one without texels has no holes.
+/// Adds the alpha of an image. An image without texels becomes opaque.
 fn add_image(rays: &mut RayScene, image: &Image) -> Result<ImageId, RayError> {
     let alpha: Vec<u8> = image.rgba.chunks_exact(4).map(|texel| texel[3]).collect();
     match AlphaImage::new(image.width, image.height, &alpha) {
@@ -114,7 +117,7 @@ fn add_image(rays: &mut RayScene, image: &Image) -> Result<ImageId, RayError> {
     }
 }
 
-/// The triangles with holes of a primitive.
+/// Returns the triangles with holes of a primitive.
 fn cut_outs(
     scene: &Scene,
     primitive: &Primitive,

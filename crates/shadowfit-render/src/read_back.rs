@@ -1,4 +1,4 @@
-//! The pixels of a texture on their way from the GPU.
+//! Read-back of a texture's pixels from the GPU.
 
 use core::fmt;
 
@@ -7,19 +7,20 @@ use shadowfit_gpu::{MapState, Mapping, TexelCopy};
 use crate::Gpu;
 use crate::wait::waiting;
 
-/// Pixels that the GPU still copies.
+/// Pixels that the GPU is still copying.
 #[derive(Debug)]
 pub struct ReadBack {
     copy: TexelCopy,
     mapping: Mapping,
 }
 
-/// Why pixels could not be read back. There are no pixels then, not even black ones.
+/// Reason why pixels could not be read back. No pixels are returned then, not even black ones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ReadError {
-    /// The device was lost or destroyed, or has no memory left for the copy.
+    /// The device was lost or destroyed, or is out of memory for the copy.
     Lost,
-    /// The device did not finish its work. Browsers finish none while a program waits: use [`ReadBack::arrive`] there.
+    /// The device did not finish its work. In browsers it never does while a program waits; use
+    /// [`ReadBack::arrive`] there.
     Unfinished,
 }
 
@@ -40,7 +41,7 @@ impl fmt::Display for ReadError {
 impl core::error::Error for ReadError {}
 
 impl ReadBack {
-    /// Begins to copy a texture of a `size` in pixels.
+    /// Starts to copy a texture of a `size` in pixels.
     pub fn new(gpu: &Gpu, texture: &wgpu::Texture, size: [u32; 2], bytes_per_pixel: u32) -> Self {
         let _unreported = gpu.without_reports();
         let size = wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 };
@@ -52,7 +53,8 @@ impl ReadBack {
         Self { copy, mapping }
     }
 
-    /// The pixels, rows from the top without padding, once they have arrived; `None` before that. Does not wait.
+    /// Returns the pixels, rows from the top without padding, once they have arrived; `None` before that.
+    /// Does not wait.
     ///
     /// # Errors
     ///
@@ -66,7 +68,7 @@ impl ReadBack {
         }
     }
 
-    /// The same, and waits for the GPU.
+    /// Waits for the GPU and returns the pixels, as for [`Self::take`].
     ///
     /// # Errors
     ///
@@ -80,7 +82,7 @@ impl ReadBack {
         }
     }
 
-    /// The same, and lets a browser do other things meanwhile; elsewhere it is [`Self::wait`].
+    /// Returns the pixels like [`Self::wait`]. A browser can do other work meanwhile.
     ///
     /// # Errors
     ///
@@ -103,11 +105,11 @@ impl ReadBack {
     }
 }
 
-/// Time between two looks for pixels in a browser, in milliseconds.
+/// Time between two polls for pixels in a browser, in milliseconds.
 #[cfg(target_family = "wasm")]
 const POLL_MS: u32 = 2;
 
-/// Copies a texture of a `size` in pixels to the CPU, rows from the top without padding; waits for the GPU.
+/// Copies a texture of a `size` in pixels to the CPU, rows from the top without padding. Waits for the GPU.
 ///
 /// # Errors
 ///

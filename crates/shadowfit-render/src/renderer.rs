@@ -1,4 +1,4 @@
-//! One frame: shadow passes, shaded pass, and what lies over the picture.
+//! One frame: shadow passes, shaded pass, and the elements over the picture.
 
 mod edges;
 mod known;
@@ -29,7 +29,7 @@ use edges::{Edges, Extent};
 use known::KnownMaps;
 use plan::Plan;
 
-/// Draws scenes with the shadows of a sun; owns every pipeline.
+/// Draws scenes with the shadows of a sun, and owns every pipeline.
 #[derive(Debug)]
 pub struct Renderer {
     layouts: Layouts,
@@ -38,40 +38,40 @@ pub struct Renderer {
     samples: u32,
     frame_uniform: wgpu::Buffer,
     frame_group: wgpu::BindGroup,
-    /// The same with the factors of its picture.
+    /// Bind group of the frame with the factors of its picture.
     lit_group: wgpu::BindGroup,
-    /// The factors that it binds.
+    /// The factors in that bind group.
     bound_factors: wgpu::TextureView,
     edges: Edges,
     judged: JudgedInput,
     lines: VertexBuffer,
     insets: VertexBuffer,
     quads: VertexBuffer,
-    /// Made for the first marks.
+    /// Created for the first marks.
     marks: Option<MarkPasses>,
-    /// What parts of multisampled pictures are resolved into.
+    /// Target for resolving parts of multisampled pictures.
     part: Option<wgpu::Texture>,
-    /// What single pixels are probed in.
+    /// Targets for probing single pixels.
     pixel_targets: Option<ProbeTargets>,
-    /// What was drawn into the maps since the last picture.
+    /// Statistics of the maps drawn since the last picture.
     drawn: [MapStatistics; MAX_MAPS],
-    /// What the maps hold, until it is unknown.
+    /// Content of the maps, if known.
     known: Option<KnownMaps>,
     timer: PassTimer,
 }
 
-/// The description of a sun whose maps may be of another size and format than its technique's.
+/// Returns the descriptor of a sun whose maps may have another size and format than its technique's.
 fn sun_descriptor(technique: Technique, maps: &ShadowMapDescriptor) -> SunShadowsDescriptor {
     SunShadowsDescriptor { technique, first_binding: maps.first_binding, texture: None, maps: Some(*maps) }
 }
 
 impl Renderer {
-    /// A renderer for pictures of `samples` per pixel (1 or 4). Nothing is kept in its maps at first, so that pictures do
-    /// not depend on what was drawn before.
+    /// Creates a renderer for pictures of `samples` per pixel (1 or 4). Its maps are not cached at first, so
+    /// that pictures do not depend on earlier ones.
     ///
     /// # Errors
     ///
-    /// [`ShadowMapError`] if the shadow map cannot be made.
+    /// [`ShadowMapError`] if the shadow map cannot be created.
     pub fn new(gpu: &Gpu, shadow_map: &ShadowMapDescriptor, samples: u32) -> Result<Self, ShadowMapError> {
         let device = &gpu.device;
         let layouts = Layouts::new(device);
@@ -106,24 +106,24 @@ impl Renderer {
         })
     }
 
-    /// Layout of the scene's materials, for [`GpuScene::new`].
+    /// Returns the layout of the scene's materials, for [`GpuScene::new`].
     pub fn material_layout(&self) -> &wgpu::BindGroupLayout {
         &self.layouts.material
     }
 
-    /// The current shadow map.
+    /// Returns the current shadow map.
     pub fn shadow_map(&self) -> &ShadowMap {
         self.sun.map()
     }
 
-    /// The sun's shadows: what was fitted, and what was drawn of it in the last frame whose maps did not
-    /// [stay](Frame::maps_stay).
+    /// Returns the sun's shadows: the fitted maps, and the parts of them that were drawn in the last frame
+    /// whose maps did not [stay](Frame::maps_stay).
     pub fn sun(&self) -> &SunShadows {
         &self.sun
     }
 
-    /// The sun's shadows, to fit them and to set how they are drawn. Another shadow map is set by
-    /// [`Self::set_shadow_map`], since pipelines depend on it.
+    /// Returns the sun's shadows, to fit them and to set how they are drawn. Use [`Self::set_shadow_map`] to
+    /// set another shadow map, because pipelines depend on it.
     pub fn sun_mut(&mut self) -> &mut SunShadows {
         &mut self.sun
     }
@@ -132,13 +132,14 @@ impl Renderer {
     ///
     /// # Errors
     ///
-    /// [`ShadowMapError`] if the new one cannot be made.
+    /// [`ShadowMapError`] if the new one cannot be created.
     pub fn set_shadow_map(&mut self, gpu: &Gpu, descriptor: &ShadowMapDescriptor) -> Result<(), ShadowMapError> {
         let old = *self.shadow_map().descriptor();
         if !self.sun.set_descriptor(&sun_descriptor(*self.sun.technique(), descriptor))? {
             return Ok(());
         }
-        // What the shaders read from uniforms may differ; the greatest radius of a filter is a constant in them.
+        // Values that shaders read from uniforms may differ. The greatest radius of a filter is a constant in
+        // the shaders.
         let ShadowMapDescriptor { resolution, fade, softness, edges, .. } = *descriptor;
         let softness = softness.with_ceiling(old.softness.ceiling);
         let same_shaders = ShadowMapDescriptor { resolution, fade, softness, edges, ..old } == *descriptor;
@@ -149,22 +150,23 @@ impl Renderer {
         Ok(())
     }
 
-    /// Times of the passes, a few frames late.
+    /// Returns the times of the passes, a few frames late.
     pub fn pass_times(&self) -> PassTimes {
         self.timer.times
     }
 
-    /// A target of the given width and height, in pixels, that this renderer can draw into.
+    /// Creates a target of the given width and height, in pixels, for this renderer.
     pub fn target(&self, gpu: &Gpu, size: [u32; 2]) -> RenderTarget {
         RenderTarget::new(&gpu.device, size, self.samples)
     }
 
-    /// Draws a frame into a target and submits it. Where the maps [stay](Frame::maps_stay) the statistics have what was
-    /// drawn into them since the last picture, such as for a probe of the same frame.
+    /// Draws a frame into a target and submits it. If the maps [stay](Frame::maps_stay), the statistics
+    /// contain the map draws since the last picture, for example for a probe of the same frame.
     ///
     /// # Errors
     ///
-    /// Those of [`ShadowMap::prepare`], for maps that this renderer's shadow map cannot take; nothing is drawn then.
+    /// As for [`ShadowMap::prepare`], if a map does not match this renderer's shadow map. Nothing is drawn
+    /// then.
     pub fn draw(
         &mut self,
         gpu: &Gpu,
@@ -189,11 +191,11 @@ impl Renderer {
         Ok(plan.statistics(core::mem::take(&mut self.drawn)))
     }
 
-    /// Draws a frame's shadow decisions and reads them back.
+    /// Draws a frame's probe and reads it back.
     ///
     /// # Errors
     ///
-    /// [`ProbeError`] for maps that the shadow map cannot take, and a device that was lost.
+    /// [`ProbeError`] if a map does not match the shadow map or the device was lost.
     pub fn probe(
         &mut self,
         gpu: &Gpu,
@@ -205,12 +207,12 @@ impl Renderer {
         Ok(targets.read(gpu)?)
     }
 
-    /// Draws a frame's shadow decisions, to be read on the GPU. A picture of the same frame may follow, for which the maps
+    /// Draws a frame's probe, to be read on the GPU. A picture of the same frame may follow, with maps that
     /// [stay](Frame::maps_stay).
     ///
     /// # Errors
     ///
-    /// As [`Self::probe`].
+    /// As for [`Self::probe`].
     pub fn draw_probe(
         &mut self,
         gpu: &Gpu,
@@ -231,7 +233,7 @@ impl Renderer {
         Ok(())
     }
 
-    /// Culls, and writes every buffer of the frame.
+    /// Culls the scene, and writes every buffer of the frame.
     fn prepare(
         &mut self,
         gpu: &Gpu,

@@ -1,5 +1,6 @@
-//! A scene on the GPU: its parts, materials, and per frame the instances that each pass sees. Deformed
-//! primitives (skins, morph targets) are deformed on the CPU, so that ray tracers see exactly the same triangles.
+//! A scene on the GPU: its parts, its materials, and for each frame the instances that each pass draws.
+//! Deformed primitives (skins, morph targets) are deformed on the CPU, so that ray tracers use exactly the
+//! same triangles.
 
 use core::sync::atomic::{AtomicU64, Ordering};
 use std::collections::HashMap;
@@ -32,25 +33,25 @@ pub struct GpuScene {
     /// Bounds of all instances, relative to the eye.
     boxes: Vec<shadowfit::Aabb>,
     data: Vec<InstanceData>,
-    /// [`InstanceData::first_map`] of each instance, in frames that show them; else empty.
+    /// [`InstanceData::first_map`] of each instance, in frames that show it; otherwise empty.
     first_maps: Vec<u32>,
     pub(crate) instance_buffer: wgpu::Buffer,
-    /// Number of the pose, unlike that of any other pose of any scene.
+    /// Number of the pose, unique among all poses of all scenes.
     pose: u64,
-    /// Made when edges are traced for the first time.
+    /// Created when edges are first traced.
     rays: Option<SceneRays>,
 }
 
-/// Least side of textures that are halved for want of memory, in texels: below that they take next to none.
+/// Smallest side of textures that are halved to save memory, in texels. Smaller ones take almost no memory.
 const LEAST_TEXTURE: u32 = 32;
 
-/// Numbers of poses that were given away.
+/// Next unused pose number.
 static POSES: AtomicU64 = AtomicU64::new(0);
 
 #[derive(Clone, Copy, Debug)]
 struct SceneInstance {
     instance: Instance,
-    /// Number of its first triangle, where only surfaces that cast are counted.
+    /// Number of its first triangle, counting only surfaces that cast.
     first_triangle: u32,
     world_from_mesh: Mat4,
     bounds: Aabb,
@@ -59,11 +60,11 @@ struct SceneInstance {
 /// A draw call: a part and a range of the instance buffer.
 #[derive(Clone, Debug)]
 pub struct Draw {
-    /// What selects its pipeline.
+    /// Key of its pipeline.
     pub key: PartKey,
     pub(crate) part: usize,
     pub(crate) instances: core::ops::Range<u32>,
-    /// Distance from the eye to the nearest instance's centre, for the order of blended parts.
+    /// Distance from the eye to the nearest instance's centre, for sorting blended parts.
     pub(crate) distance: f32,
 }
 
@@ -72,17 +73,17 @@ impl GpuScene {
     ///
     /// # Errors
     ///
-    /// [`DeviceFault`] if the device has no memory for it.
+    /// [`DeviceFault`] if the device is out of memory.
     pub fn new(gpu: &Gpu, layout: &wgpu::BindGroupLayout, scene: &Scene, pose: &Pose) -> Result<Self, DeviceFault> {
         Self::with_textures(gpu, layout, scene, pose, u32::MAX)
     }
 
-    /// The same within the device's memory: where there is not enough, textures are halved until there is. Returns the most
-    /// texels that a texture's side was allowed, if that made a difference.
+    /// Uploads a scene, with textures halved until it fits into the device's memory. Also returns the
+    /// resulting limit of a texture's side, in texels, if any textures were halved.
     ///
     /// # Errors
     ///
-    /// [`DeviceFault`] where triangles alone are too many.
+    /// [`DeviceFault`] if the triangles alone need too much memory.
     pub fn within_memory(
         gpu: &Gpu,
         layout: &wgpu::BindGroupLayout,
@@ -97,7 +98,7 @@ impl GpuScene {
         let largest = scene.images.iter().map(|image| image.width.max(image.height)).max().unwrap_or(0);
         let mut side = largest.next_power_of_two() / 2;
         while matches!(fault, DeviceFault::OutOfMemory(_)) && side >= LEAST_TEXTURE {
-            // What was made in vain is freed only once the device is done with it.
+            // Failed attempts are freed only once the device is done with them.
             gpu.submit([]);
             let _ = gpu.device.poll(wgpu::PollType::wait_indefinitely());
             if let Ok(made) = make(side) {
@@ -138,7 +139,7 @@ impl GpuScene {
         Ok(gpu_scene)
     }
 
-    /// Moves everything to a pose of the same scene.
+    /// Moves all instances to a pose of the same scene.
     pub fn set_pose(&mut self, gpu: &Gpu, scene: &Scene, pose: &Pose) {
         self.pose = POSES.fetch_add(1, Ordering::Relaxed);
         for part in &self.parts {
@@ -166,25 +167,26 @@ impl GpuScene {
         let (parts, instances) = (&self.parts, &self.instances);
         self.casters.set_boxes(|part, instance, cluster| {
             let (clusters, instance) = (&parts[part].clusters, &instances[instance]);
-            // What deforms is one cluster, whose bounds are those of its pose.
+            // A deforming part is one cluster, with the bounds of its pose.
             if clusters.len() == 1 {
                 instance.bounds
             } else {
                 transformed(&clusters[cluster].bounds, &instance.world_from_mesh)
             }
         });
-        // What rays cannot follow is not traced.
+        // If rays cannot follow the pose, edges are not traced.
         if self.rays.is_some() && self.pose_rays(gpu).is_err() {
             self.rays = None;
         }
     }
 
-    /// Makes the casters ready for rays on the GPU, unless they are. `origin` is the world position near the scene that they
-    /// are relative to, in metres; `scene` is the one that this was made from.
+    /// Prepares the casters for rays on the GPU, unless they are prepared. `origin` is the world position
+    /// near the scene that they are relative to, in metres. `scene` must be the scene that this was created
+    /// from.
     ///
     /// # Errors
     ///
-    /// [`RayError`] for a scene that is too large for the device, and one without compute shaders.
+    /// [`RayError`] if the scene is too large for the device, or the device lacks compute shaders.
     pub fn make_rays(&mut self, gpu: &Gpu, scene: &Scene, origin: DVec3) -> Result<(), RayError> {
         if self.rays.is_some() {
             return Ok(());
@@ -202,12 +204,12 @@ impl GpuScene {
         posed
     }
 
-    /// The casters for rays, if they were [made](Self::make_rays).
+    /// Returns the casters for rays, if they were [prepared](Self::make_rays).
     pub fn rays(&self) -> Option<&RayScene> {
         self.rays.as_ref().map(|rays| &rays.scene)
     }
 
-    /// Moves the casters for rays to the present pose.
+    /// Moves the casters for rays to the current pose.
     fn pose_rays(&mut self, gpu: &Gpu) -> Result<(), RayError> {
         let Some(rays) = &mut self.rays else { return Ok(()) };
         let (parts, instances) = (&self.parts, &self.instances);
@@ -221,7 +223,7 @@ impl GpuScene {
         rays.refit(gpu, deformed.map(|(index, part)| (index, &part.streams[0])))
     }
 
-    /// Number of the pose that was set last, unlike that of any other pose of any scene.
+    /// Returns the number of the current pose, unique among all poses of all scenes.
     pub fn pose(&self) -> u64 {
         self.pose
     }
@@ -237,12 +239,13 @@ impl GpuScene {
         self.boxes.extend(boxes.map(|bounds| shadowfit::Aabb::new(relative(bounds.min), relative(bounds.max))));
     }
 
-    /// Everything that casts shadows, by number, in world space. What has an animation, or hangs on it, counts as moving.
+    /// Returns all casters, by number, in world space. Nodes with an animation, and their descendants, count
+    /// as moving.
     pub fn casters(&self) -> Casters<'_> {
         self.casters.by_number()
     }
 
-    /// Sets which maps hold the casters of this frame: bit i of a caster's mask stands for map i.
+    /// Sets which maps hold the casters of this frame. Bit i of a caster's mask means map i.
     pub(crate) fn set_maps_by_caster(&mut self, masks: &[u8]) {
         self.first_maps.clear();
         self.first_maps.resize(self.instances.len(), 0);
@@ -269,9 +272,9 @@ impl GpuScene {
         casters.draws(numbers, indices, add, draws);
     }
 
-    /// Adds the instances that a clip space may show, and returns their draws: of opaque parts the nearest first, so that
-    /// what they hide is never shaded, and of blended ones the farthest first. `clip_from_world` takes positions relative
-    /// to the frame's eye.
+    /// Adds the instances inside a frustum, and returns their draws. Opaque parts are sorted nearest first,
+    /// so that hidden surfaces are not shaded, and blended parts farthest first. `clip_from_world` applies to
+    /// positions relative to the frame's eye.
     pub fn seen(&mut self, clip_from_world: Mat4) -> [Vec<Draw>; 2] {
         let keep = in_frustum(clip_from_world);
         let mut opaque = self.visible(&keep, |part| !part.is_blended());
@@ -281,8 +284,8 @@ impl GpuScene {
         [opaque, blended]
     }
 
-    /// Adds the instances that a pass sees, and returns its draws. `keep` is asked with an instance's bounds relative to
-    /// the frame's eye.
+    /// Adds the instances of a pass, and returns its draws. `keep` is called with an instance's bounds
+    /// relative to the frame's eye.
     fn visible(&mut self, keep: impl Fn(&shadowfit::Aabb) -> bool, takes: impl Fn(&Part) -> bool) -> Vec<Draw> {
         let mut draws = Vec::new();
         for (part_index, part) in self.parts.iter().enumerate().filter(|(_, part)| takes(part)) {
@@ -305,7 +308,8 @@ impl GpuScene {
         draws
     }
 
-    /// Adds all instances on nodes that are wanted, and returns their draws. Blended surfaces are left out.
+    /// Adds all instances whose node satisfies `wants`, and returns their draws. Blended surfaces are left
+    /// out.
     pub fn drawn_of(&mut self, wants: impl Fn(usize) -> bool) -> Vec<Draw> {
         let mut draws = Vec::new();
         for (part_index, part) in self.parts.iter().enumerate().filter(|(_, part)| !part.is_blended()) {
@@ -322,7 +326,7 @@ impl GpuScene {
         draws
     }
 
-    /// Draws a part, with its material as a bind group where one is wanted.
+    /// Draws a part. Sets its material as a bind group if a group is given.
     pub fn draw(&self, pass: &mut wgpu::RenderPass<'_>, draw: &Draw, material_group: Option<u32>) {
         let part = &self.parts[draw.part];
         if let Some(group) = material_group {
@@ -336,7 +340,7 @@ impl GpuScene {
         pass.draw_indexed(0..part.index_count, 0, draw.instances.clone());
     }
 
-    /// Draws a part of a probe, with its material as a bind group, by a pipeline of its
+    /// Draws a part of a probe, with its material as a bind group, with a pipeline for its
     /// [`Numbering`](crate::unrolled::Numbering).
     pub fn draw_probed(&self, pass: &mut wgpu::RenderPass<'_>, draw: &Draw, material_group: u32) {
         let part = &self.parts[draw.part];
@@ -355,24 +359,24 @@ impl GpuScene {
         gpu.queue.write_buffer(&self.instance_buffer, 0, bytes);
     }
 
-    /// World bounds of an instance in the pose that was last set, in metres, by its index in
-    /// [`Scene::instances`]; `None` where it has no vertices. They hold all its vertices, deformed ones
-    /// as they are deformed. Where its node is turned they are larger than the least box, since they
-    /// enclose the turned box of the mesh.
+    /// Returns the world bounds of an instance in the current pose, in metres, by its index in
+    /// [`Scene::instances`]; `None` if it has no vertices. They hold all its vertices, after deformation. If
+    /// its node is rotated, they are larger than the smallest box, because they enclose the rotated box of
+    /// the mesh.
     pub fn instance_bounds(&self, index: usize) -> Option<Aabb> {
         let bounds = self.instances.get(index)?.bounds;
         (!bounds.is_empty()).then_some(bounds)
     }
 
-    /// World bounds of all instances in the pose that was last set, in metres, those of blended
-    /// surfaces included; `None` for a scene without vertices. It is the union of
-    /// [`Self::instance_bounds`], so it holds every vertex, but may be larger than necessary.
+    /// Returns the world bounds of all instances in the current pose, in metres, including blended surfaces;
+    /// `None` for a scene without vertices. They are the union of [`Self::instance_bounds`]: they hold every
+    /// vertex, but may be larger than necessary.
     pub fn bounds(&self) -> Option<Aabb> {
         self.instances.iter().map(|instance| instance.bounds).filter(|bounds| !bounds.is_empty()).reduce(Aabb::union)
     }
 }
 
-/// Uploads the parts of all instances: one for each primitive, and one for each instance that deforms.
+/// Uploads the parts of all instances: one for each primitive, and one for each deforming instance.
 fn parts(upload: &Upload<'_>, scene: &Scene, pose: &Pose, instances: &[Instance]) -> Vec<Part> {
     let mut parts: Vec<Part> = Vec::new();
     let (mut shared, mut twins) = (HashMap::new(), HashMap::new());
@@ -396,8 +400,8 @@ fn parts(upload: &Upload<'_>, scene: &Scene, pose: &Pose, instances: &[Instance]
     parts
 }
 
-/// Whether a box relative to the eye may be seen: not wholly outside one of the six clip planes
-/// (Gribb and Hartmann, 2001).
+/// Returns whether a box relative to the eye may be visible: not completely outside one of the six clip
+/// planes (Gribb and Hartmann, 2001).
 fn in_frustum(clip_from_world: Mat4) -> impl Fn(&shadowfit::Aabb) -> bool {
     let row = |index| clip_from_world.row(index);
     let planes = [row(3) + row(0), row(3) - row(0), row(3) + row(1), row(3) - row(1), row(2), row(3) - row(2)];
@@ -410,7 +414,7 @@ fn in_frustum(clip_from_world: Mat4) -> impl Fn(&shadowfit::Aabb) -> bool {
     }
 }
 
-/// Instances with the numbers of their first triangles.
+/// Returns instances with the numbers of their first triangles.
 fn numbered(scene: &Scene, instances: Vec<Instance>) -> Vec<SceneInstance> {
     let mut triangles = 0;
     let number = |instance: Instance| {
@@ -424,7 +428,7 @@ fn numbered(scene: &Scene, instances: Vec<Instance>) -> Vec<SceneInstance> {
     instances.into_iter().map(number).collect()
 }
 
-/// The casters of a scene.
+/// Returns the casters of a scene.
 fn casters(scene: &Scene, instances: &[Instance], parts: &[Part]) -> SceneCasters {
     let moves = animated(scene);
     let mut casters = SceneCasters::default();
@@ -437,7 +441,7 @@ fn casters(scene: &Scene, instances: &[Instance], parts: &[Part]) -> SceneCaster
     casters
 }
 
-/// Whether each node has an animation, or hangs on a node that has one.
+/// Returns for each node whether it or an ancestor has an animation.
 fn animated(scene: &Scene) -> Vec<bool> {
     let mut moves = vec![false; scene.nodes.len()];
     for channel in scene.animations.iter().flat_map(|animation| &animation.channels) {
@@ -445,7 +449,7 @@ fn animated(scene: &Scene) -> Vec<bool> {
             *moves = true;
         }
     }
-    // Parents stand before their children.
+    // Parents come before their children.
     for node in 0..moves.len() {
         moves[node] |= scene.nodes[node].parent.is_some_and(|parent| moves[parent]);
     }

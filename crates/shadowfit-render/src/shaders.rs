@@ -1,4 +1,4 @@
-//! The shader modules, put together from the pieces in `shaders/` and the shadow map's own WGSL.
+//! The shader modules, composed of the pieces in `shaders/` and the shadow map's own WGSL.
 
 use core::fmt::Write as _;
 
@@ -12,14 +12,14 @@ use crate::unrolled::Numbering;
 /// Bind group of the map's matrix in the shadow pass.
 pub const CASTER_GROUP: u32 = 0;
 
-/// Bind group of the frame, and in it the binding of the picture's factors.
+/// Bind group of the frame, and the binding of the picture's factors in it.
 const FRAME_GROUP: u32 = 0;
 const FACTORS_BINDING: u32 = 1;
 
 /// Bind group of the shadow map in the shaded pass.
 pub const SHADOW_GROUP: u32 = 1;
 
-/// What shaders of a frame read: [`FrameUniform`](crate::FrameUniform) in group 0, with the tone curve.
+/// Inputs of a frame's shaders: [`FrameUniform`](crate::FrameUniform) in group 0, with the tone curve.
 pub const FRAME: &str = concat!(
     include_str!("shaders/powers.wgsl"),
     include_str!("shaders/tone_map.wgsl"),
@@ -40,19 +40,19 @@ const MARK: &str = include_str!("shaders/mark.wgsl");
 /// The vertex stage of passes that fill a picture.
 pub const SCREEN: &str = include_str!("shaders/screen.wgsl");
 
-/// The sky.
+/// Returns the sky pass.
 pub fn sky() -> String {
     [FRAME, include_str!("shaders/sky.wgsl")].concat()
 }
 
-/// The shadow pass: group 0 is the shadow map's, group 1 the material's.
+/// Returns the shadow pass: group 0 is the shadow map's, group 1 the material's.
 pub fn caster(shadow_map: &ShadowMapDescriptor) -> String {
     let color = if shadow_map.format.is_depth() { "" } else { include_str!("shaders/caster_color.wgsl") };
     let shadow_map = caster_wgsl(shadow_map, &WgslOptions::group(CASTER_GROUP));
     [&shadow_map, &material(1), include_str!("shaders/caster.wgsl"), color].concat()
 }
 
-/// The shaded pass: frame, shadow map and material are groups 0, 1 and 2.
+/// Returns the shaded pass: frame, shadow map and material are groups 0, 1 and 2.
 pub fn scene(shadow_map: &ShadowMapDescriptor) -> String {
     [
         FRAME,
@@ -65,7 +65,7 @@ pub fn scene(shadow_map: &ShadowMapDescriptor) -> String {
     .concat()
 }
 
-/// The probe pass, with the groups of the shaded one.
+/// Returns the probe pass, with the groups of the shaded pass.
 pub fn probe(shadow_map: &ShadowMapDescriptor, numbering: Numbering) -> String {
     let entries = match numbering {
         Numbering::Primitives => include_str!("shaders/probe_primitive.wgsl"),
@@ -74,27 +74,27 @@ pub fn probe(shadow_map: &ShadowMapDescriptor, numbering: Numbering) -> String {
     [numbering.directive(), &scene(shadow_map), include_str!("shaders/probe.wgsl"), entries].concat()
 }
 
-/// The pass that draws what edges are resolved from, with the groups of the shaded one.
+/// Returns the pass that draws surfaces for tracing edges, with the groups of the shaded pass.
 pub fn surfaces(shadow_map: &ShadowMapDescriptor) -> String {
     [&scene(shadow_map), include_str!("shaders/surfaces.wgsl")].concat()
 }
 
-/// What clears a part of a picture.
+/// Returns the pass that clears a part of a picture.
 pub fn clear() -> String {
     [SCREEN, include_str!("shaders/clear.wgsl")].concat()
 }
 
-/// What encodes a picture: its linear colours are group 0.
+/// Returns the pass that encodes a picture: its linear colours are group 0.
 pub fn encode() -> String {
     [SCREEN, SRGB, include_str!("shaders/encode.wgsl")].concat()
 }
 
-/// Lines of the world.
+/// Returns the pass that draws world-space lines.
 pub fn lines() -> String {
     [FRAME, include_str!("shaders/lines.wgsl")].concat()
 }
 
-/// The shaded pass of an overlay, with its groups; a judged picture is group 3.
+/// Returns the shaded pass of an overlay, with its groups. A judged picture is group 3.
 pub fn overlay(shadow_map: &ShadowMapDescriptor, overlay: Overlay) -> String {
     let judged = if overlay.is_judged() { in_group(JUDGED, 3) + &error_colors() } else { String::new() };
     let colors = match overlay {
@@ -105,27 +105,27 @@ pub fn overlay(shadow_map: &ShadowMapDescriptor, overlay: Overlay) -> String {
     [&scene(shadow_map), OVERLAY, &judged, &colors, overlay.wgsl()].concat()
 }
 
-/// A material's textures and colours, whose bindings are in a group.
+/// Returns a material's textures and colours, with bindings in a group.
 pub fn material(group: u32) -> String {
     MATERIAL.replace("MATERIAL_GROUP", &group.to_string())
 }
 
-/// A piece whose bindings are in a group.
+/// Returns a piece with its bindings in a group.
 pub fn in_group(piece: &str, group: u32) -> String {
     piece.replace("GROUP", &group.to_string())
 }
 
-/// Linear colour of a class of wrong pixels.
+/// Returns the linear colour of a class of wrong pixels.
 fn error_colors() -> String {
     by_number("error_color", "Linear colour of a class of wrong pixels.", (2..).zip(ERROR_COLORS))
 }
 
-/// Linear colour of pixels that were traced, 0, and of those that were left to the filter, 1.
+/// Returns the linear colour of pixels that were traced, 0, or left to the filter, 1.
 fn edge_colors() -> String {
     by_number("edge_color", "Linear colour of pixels that were traced, or left to the filter.", (0..).zip(EDGE_COLORS))
 }
 
-/// A function that gives linear colours by number, and black by others.
+/// Returns a function that maps numbers to linear colours, and other numbers to black.
 fn by_number(name: &str, comment: &str, colors: impl Iterator<Item = (u32, [u8; 3])>) -> String {
     let mut text = format!("\n// {comment}\nfn {name}(kind: u32) -> vec3<f32> {{\n");
     for (number, color) in colors.map(|(number, color)| (number, linear_color(color))) {
@@ -135,7 +135,8 @@ fn by_number(name: &str, comment: &str, colors: impl Iterator<Item = (u32, [u8; 
     text + "    return vec3<f32>(0.0);\n}\n"
 }
 
-/// Colour of pixels per texel by their octave, 0 at one pixel per texel: encoded, as the scale is interpolated.
+/// Returns the function of colours by octaves of pixels per texel, 0 at one pixel per texel. Colours are
+/// encoded, because the scale is interpolated in encoded colours.
 fn octave_color() -> String {
     let mut text =
         "\n// Encoded colour of a number of octaves from one pixel per texel.\nfn octave_color(octaves: f32) -> vec3<f32> {\n"
@@ -153,7 +154,8 @@ fn octave_color() -> String {
     text + "    return color;\n}\n"
 }
 
-/// The first pass of marks: a judged picture is group 0, depth of as many samples per pixel and marks are group 1.
+/// Returns the first pass of marks: a judged picture is group 0, depth of `samples` per pixel and marks are
+/// group 1.
 pub fn mark_rows(samples: u32) -> String {
     let depth = match samples {
         1 => include_str!("shaders/mark_depth.wgsl"),
@@ -162,31 +164,31 @@ pub fn mark_rows(samples: u32) -> String {
     [SCREEN, &in_group(JUDGED, 0), &in_group(MARK, 1), depth, include_str!("shaders/mark_rows.wgsl")].concat()
 }
 
-/// The second pass of marks: marks and what the first pass found are group 0.
+/// Returns the second pass of marks: marks and the result of the first pass are group 0.
 pub fn marks() -> String {
     [SCREEN, &in_group(MARK, 0), &error_colors(), include_str!("shaders/marks.wgsl")].concat()
 }
 
-/// Filled quadrilaterals.
+/// Returns the pass of filled quadrilaterals.
 pub fn quads() -> String {
     [FRAME, include_str!("shaders/quads.wgsl")].concat()
 }
 
-/// Depths of a block of texels: the block is group 0, the shadow map group 1.
+/// Returns the pass of a block of texels' depths: the block is group 0, the shadow map group 1.
 pub fn block(shadow_map: &ShadowMapDescriptor, backend: wgpu::Backend) -> String {
     let options = WgslOptions::group(SHADOW_GROUP);
     let (receiver, stored) = (receiver_wgsl(shadow_map, &options), stored_wgsl(shadow_map, &options, backend));
     [SCREEN, &receiver, &stored, include_str!("shaders/block.wgsl")].concat()
 }
 
-/// The shadow map's insets: frame and shadow map are groups 0 and 1.
+/// Returns the pass of the shadow map's insets: frame and shadow map are groups 0 and 1.
 pub fn inset(shadow_map: &ShadowMapDescriptor, backend: wgpu::Backend) -> String {
     let options = WgslOptions::group(SHADOW_GROUP);
     let (receiver, stored) = (receiver_wgsl(shadow_map, &options), stored_wgsl(shadow_map, &options, backend));
     [FRAME, &receiver, &stored, include_str!("shaders/inset.wgsl")].concat()
 }
 
-/// Texture levels.
+/// Returns the pass of texture levels.
 pub fn mip() -> String {
     include_str!("shaders/mip.wgsl").to_owned()
 }

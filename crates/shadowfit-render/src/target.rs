@@ -1,4 +1,4 @@
-//! A render target: colour (resolved to one sample), depth, and the way back to the CPU.
+//! A render target: colour (resolved to one sample), depth, and the read-back to the CPU.
 
 use crate::Gpu;
 use crate::attachment::{cleared, depth};
@@ -16,12 +16,13 @@ pub struct RenderTarget {
     pub(crate) color_view: wgpu::TextureView,
     pub(crate) multisampled: Option<wgpu::TextureView>,
     pub(crate) depth_view: wgpu::TextureView,
-    /// The display values, where they are no view of the colours.
+    /// The display values, if they are not a view of the colours.
     pub(crate) encoded: Option<Encoded>,
 }
 
 impl RenderTarget {
-    /// Makes a target of at least 1×1 pixels, and no more than the device allows, with `samples` per pixel (1 or 4).
+    /// Creates a target with `samples` per pixel (1 or 4). Its size is at least 1×1 pixels and at most the
+    /// device's limit.
     pub fn new(device: &wgpu::Device, size: [u32; 2], samples: u32) -> Self {
         let limit = device.limits().max_texture_dimension_2d;
         let size = size.map(|side| side.clamp(1, limit));
@@ -39,31 +40,32 @@ impl RenderTarget {
         Self { size, color, color_view, multisampled, depth_view, encoded }
     }
 
-    /// The depth buffer of what was drawn last, of as many samples as the target: reversed, 0 where there is sky. Shaders
-    /// can load it, but not those of OpenGL.
+    /// Returns the depth buffer of the last picture, with the target's number of samples: reversed, 0 for the
+    /// sky. Shaders can load it, except on OpenGL.
     pub fn depth_view(&self) -> &wgpu::TextureView {
         &self.depth_view
     }
 
-    /// The depth buffer, where shaders can read it.
+    /// Returns the depth buffer, if shaders can read it.
     pub(crate) fn readable_depth(&self) -> Option<&wgpu::TextureView> {
         let is_readable = self.depth_view.texture().usage().contains(wgpu::TextureUsages::TEXTURE_BINDING);
         is_readable.then_some(&self.depth_view)
     }
 
-    /// The colours, which tell this target from others.
+    /// Returns the texture of the colours, which identifies this target.
     pub fn texture(&self) -> &wgpu::Texture {
         &self.color
     }
 
-    /// A view of the encoded bytes, for user interfaces.
+    /// Returns a view of the encoded bytes, for user interfaces.
     pub fn encoded_view(&self) -> wgpu::TextureView {
         let view = wgpu::TextureViewDescriptor { format: Some(ENCODED_FORMAT), ..Default::default() };
         self.encoded.as_ref().map_or_else(|| self.color.create_view(&view), |encoded| encoded.view.clone())
     }
 
-    /// Begins a pass that writes display values as they are, over a `background` of them, with the camera's depth. Its
-    /// pipelines have [`ENCODED_FORMAT`], [`DEPTH_FORMAT`] and the target's number of samples.
+    /// Begins a pass that writes display values unchanged, over a `background` of display values, with the
+    /// camera's depth. Its pipelines must have [`ENCODED_FORMAT`], [`DEPTH_FORMAT`] and the target's number
+    /// of samples.
     pub fn begin_encoded<'a>(
         &self,
         encoder: &'a mut wgpu::CommandEncoder,
@@ -107,7 +109,7 @@ impl RenderTarget {
         gpu.submit([encoder.finish()]);
     }
 
-    /// Begins to read the picture: sRGB pixels, four bytes each, rows from the top.
+    /// Starts to read the picture: sRGB pixels, four bytes each, rows from the top.
     pub fn read_back(&self, gpu: &Gpu) -> ReadBack {
         let texture = self.encoded.as_ref().map_or(&self.color, |encoded| &encoded.texture);
         ReadBack::new(gpu, texture, self.size, 4)
@@ -124,9 +126,9 @@ impl RenderTarget {
 }
 
 fn attachment(device: &wgpu::Device, size: [u32; 2], format: wgpu::TextureFormat, samples: u32) -> wgpu::Texture {
-    // Of several samples nobody reads the colours before they are resolved.
+    // Multisampled colours are not read before they are resolved.
     let readable = match (samples, format) {
-        // Parts of pictures are copied into them.
+        // Parts of pictures are copied into these.
         (1, COLOR_FORMAT | ENCODED_FORMAT) => {
             wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_SRC | wgpu::TextureUsages::COPY_DST
         }

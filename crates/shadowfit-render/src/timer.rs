@@ -1,4 +1,4 @@
-//! Times of the renderer's passes, and which of them make up a frame.
+//! Times of the renderer's passes, assigned to frames.
 
 use shadowfit_wgpu::MAX_MAPS;
 use wgpu_profiler::{GpuProfilerQuery, GpuTimerQueryResult};
@@ -9,24 +9,24 @@ use crate::gpu_timer::GpuTimer;
 /// A timed pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Pass {
-    /// Into a map, by its number.
+    /// The pass into a map, by the map's number.
     Shadow(usize),
     Probe,
-    /// Depths and normals that edges are traced from.
+    /// Depths and normals for tracing edges.
     Surfaces,
     /// The edge passes.
     Edges,
     Scene,
-    /// The shaded pass of a further picture of maps that a frame before it drew.
+    /// The shaded pass of a further picture, with maps that an earlier frame drew.
     Again,
 }
 
-/// Times of the last frame that the GPU has finished, in milliseconds; `None` for passes that it did not have, and where the
-/// adapter has no timestamps.
+/// Times of the last frame that the GPU has finished, in milliseconds. `None` for passes that the frame
+/// lacks, and if the adapter has no timestamps.
 ///
-/// A frame ends with its picture. A probe that is drawn before it belongs to it where the maps
-/// [stay](crate::Frame::maps_stay); of any other probe only its own pass is timed. Further pictures of the same maps are
-/// not timed.
+/// A frame ends with its picture. A probe before the picture belongs to the same frame if the picture's maps
+/// [stay](crate::Frame::maps_stay). Of any other probe, only the probe pass is timed. Further pictures of the
+/// same maps are not timed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PassTimes {
     /// All shadow passes together.
@@ -35,7 +35,7 @@ pub struct PassTimes {
     pub maps_ms: [Option<f32>; MAX_MAPS],
     /// The probe pass.
     pub probe_ms: Option<f32>,
-    /// The passes that edges are traced by: depths and normals, and rays.
+    /// The passes for tracing edges: depths and normals, and rays.
     pub edges_ms: Option<f32>,
     /// The shaded pass.
     pub scene_ms: Option<f32>,
@@ -46,12 +46,13 @@ pub struct PassTimes {
 pub(crate) struct PassTimer {
     timer: GpuTimer,
     pub(crate) times: PassTimes,
-    /// Whether the frame that is open has a probe, and whether maps were drawn for it.
+    /// Whether the current frame has a probe, and whether maps were drawn for it.
     has_probe: bool,
     has_maps: bool,
 }
 
-/// Frames that wait for the GPU at most: each picture may have one or two probes that are frames of their own.
+/// Greatest number of frames that wait for the GPU. Each picture may have one or two probes that count as
+/// separate frames.
 const PENDING: usize = 9;
 
 /// Labels of the passes into the maps.
@@ -72,7 +73,8 @@ impl Pass {
 }
 
 impl PassTimes {
-    /// Times of a frame. What it lacks is left as it was where it has no picture, or only a further one of the same maps.
+    /// Returns the times of a frame. If it has no picture, or only a further picture of the same maps,
+    /// missing times are taken from `before`.
     fn of(results: &[GpuTimerQueryResult], before: Self) -> Self {
         let milliseconds = |pass: Pass| {
             let ranges = results.iter().filter(|result| result.label == pass.label());
@@ -101,7 +103,7 @@ impl PassTimer {
         Self { timer, times: PassTimes::default(), has_probe: false, has_maps: false }
     }
 
-    /// A probe comes next. One without a picture after it is a frame of its own.
+    /// Begins a probe. A probe without a picture after it is a separate frame.
     pub(crate) fn begin_probe(&mut self, gpu: &Gpu, maps_stay: bool) {
         if self.has_probe {
             self.end_frame(gpu);
@@ -109,14 +111,14 @@ impl PassTimer {
         (self.has_probe, self.has_maps) = (true, !maps_stay);
     }
 
-    /// A picture comes next. One whose maps are drawn for it is a frame of its own.
+    /// Begins a picture. If its maps are drawn for it, it is a separate frame.
     pub(crate) fn begin_picture(&mut self, gpu: &Gpu, maps_stay: bool) {
         if self.has_probe && !maps_stay {
             self.end_frame(gpu);
         }
     }
 
-    /// What the shaded pass of a frame is timed as.
+    /// Returns the timed pass for the shaded pass of a frame.
     pub(crate) fn scene(&self, maps_stay: bool) -> Pass {
         if maps_stay && !self.has_maps { Pass::Again } else { Pass::Scene }
     }
@@ -126,17 +128,17 @@ impl PassTimer {
         self.timer.begin(pass.label(), encoder)
     }
 
-    /// Ends what [`Self::begin`] began.
+    /// Ends a query of [`Self::begin`].
     pub(crate) fn end(&self, query: Option<GpuProfilerQuery>, encoder: &mut wgpu::CommandEncoder) {
         self.timer.end(query, encoder);
     }
 
-    /// Records the way of the timestamps back: the last thing before an encoder is submitted.
+    /// Records the read-back of the timestamps. Call it last before the encoder is submitted.
     pub(crate) fn resolve(&mut self, encoder: &mut wgpu::CommandEncoder) {
         self.timer.resolve(encoder);
     }
 
-    /// Closes a submitted frame and takes the times of those that are finished.
+    /// Ends a submitted frame and takes the times of finished frames.
     pub(crate) fn end_frame(&mut self, gpu: &Gpu) {
         (self.has_probe, self.has_maps) = (false, false);
         self.timer.end_frame(gpu);

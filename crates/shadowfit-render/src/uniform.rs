@@ -1,5 +1,4 @@
-//! The structs that the shaders of this crate read. Their layout is compared with naga's
-//! reflection in the tests.
+//! The structs that the shaders of this crate read. Tests compare their layout with naga's reflection.
 
 use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
@@ -15,7 +14,7 @@ pub struct Atmosphere {
     pub sun: Vec3,
     /// Sky overhead.
     pub zenith: Vec3,
-    /// Sky at the horizon, which distant things fade into.
+    /// Sky at the horizon, and the colour into which distant surfaces fade.
     pub horizon: Vec3,
     /// Light that the ground reflects.
     pub ground: Vec3,
@@ -35,22 +34,22 @@ impl Default for Atmosphere {
     }
 }
 
-/// What every shader of a frame reads: `Frame` in WGSL.
+/// Input of every shader of a frame: `Frame` in WGSL.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct FrameUniform {
-    /// Clip space (reversed depth) from world positions relative to the eye.
+    /// Matrix clip (reversed depth) from world positions relative to the eye.
     pub clip_from_world: [[f32; 4]; 4],
-    /// A line of sight moves by `ray_right * ndc.x + ray_up * ndc.y` from the middle of the picture: at a view depth of
-    /// 1 m for a perspective, at any view depth for an orthographic lens. In metres.
+    /// Offset of a line of sight from the middle of the picture, `ray_right * ndc.x + ray_up * ndc.y`, in
+    /// metres: at a view depth of 1 m for a perspective, at any view depth for an orthographic lens.
     pub ray_right: [f32; 4],
     /// See `ray_right`.
     pub ray_up: [f32; 4],
-    /// Unit direction of view.
+    /// Unit view direction.
     pub ray_forward: [f32; 4],
     /// Unit direction toward the light.
     pub to_light: [f32; 3],
-    /// 1 where shadows are drawn, 0 where everything is lit.
+    /// 1 if shadows are drawn, 0 if everything is lit.
     pub shadows: f32,
     /// [`Atmosphere::sun`].
     pub sun: [f32; 3],
@@ -66,14 +65,14 @@ pub struct FrameUniform {
     pub viewport: [f32; 2],
     /// View depth of the near plane, in metres.
     pub near: f32,
-    /// 1 where all lines of sight are parallel, 0 for a perspective.
+    /// 1 if all lines of sight are parallel, 0 for a perspective.
     pub parallel: f32,
     /// Linear [`MAP_TINTS`](shadowfit_params::figures::MAP_TINTS), for overlays; alpha is 1.
     pub map_tints: [[f32; 4]; MAX_MAPS],
 }
 
 impl FrameUniform {
-    /// The uniform of a frame; `to_light` is unit, `viewport` in pixels.
+    /// Creates the uniform of a frame. `to_light` is a unit direction, `viewport` in pixels.
     pub fn new(camera: impl Into<Camera>, to_light: Vec3, shadows: bool, sky: &Atmosphere, viewport: [u32; 2]) -> Self {
         let camera: Camera = camera.into();
         let view = camera.view_from_world();
@@ -98,7 +97,7 @@ impl FrameUniform {
     }
 }
 
-/// What the shaders read of a material: `Material` in WGSL.
+/// Properties of a material in shaders: `Material` in WGSL.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct MaterialUniform {
@@ -110,8 +109,8 @@ pub struct MaterialUniform {
     pub normal_uv: [[f32; 4]; 2],
     /// Linear emitted radiance.
     pub emissive: [f32; 3],
-    /// Fragments with less alpha are absent from pictures of masked materials, and from maps of cut-outs; 0 for opaque
-    /// materials.
+    /// Alpha below which fragments are discarded, in pictures of masked materials and in maps of cut-outs; 0
+    /// for opaque materials.
     pub alpha_cutoff: f32,
     /// Metalness, 0..=1.
     pub metallic: f32,
@@ -119,12 +118,12 @@ pub struct MaterialUniform {
     pub roughness: f32,
     /// Scale of the normal map's x and y; 0 without a map.
     pub normal_scale: f32,
-    /// 1 where alpha is blended, 0 where the surface is opaque.
+    /// 1 if alpha is blended, 0 if the surface is opaque.
     pub blended: f32,
 }
 
 impl MaterialUniform {
-    /// The uniform of a material.
+    /// Creates the uniform of a material.
     pub fn new(material: &Material) -> Self {
         use shadowfit_scene::AlphaMode;
         let rows = |texture: Option<Texture>| {
@@ -150,12 +149,12 @@ impl MaterialUniform {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct InstanceData {
-    /// Rows of the affine transform: world relative to the eye from mesh.
+    /// Rows of the affine transform: eye-relative world from mesh.
     pub rows: [[f32; 4]; 3],
     /// Number of the instance's first triangle in the scene, for probes.
     pub first_triangle: u32,
-    /// The map that holds it, for [`Overlay::Casters`](crate::Overlay::Casters): its index plus 2, 1 if no map does, 0 for
-    /// what casts nothing.
+    /// The map that holds it, for [`Overlay::Casters`](crate::Overlay::Casters): its index plus 2, 1 if no
+    /// map does, 0 if the instance casts no shadow.
     pub first_map: u32,
     /// Keeps the struct a multiple of 16 bytes.
     pub padding: [u32; 2],
@@ -177,11 +176,11 @@ pub struct LineVertex {
 pub struct InsetVertex {
     /// Left, top, width and height of the inset in the picture, in pixels.
     pub rectangle: [f32; 4],
-    /// Stored depths shown as black and as white.
+    /// Stored depths that are shown as black and as white.
     pub depth_range: [f32; 2],
-    /// Which map is shown.
+    /// Index of the shown map.
     pub map: u32,
-    /// Linear colour of its frame.
+    /// Linear colour of its border.
     pub border: [f32; 3],
 }
 
@@ -191,34 +190,34 @@ pub struct InsetVertex {
 pub struct QuadVertex {
     /// The first two corners, in pixels.
     pub first: [f32; 4],
-    /// The other two.
+    /// The other two corners, in pixels.
     pub second: [f32; 4],
     /// Linear colour and alpha.
     pub color: [f32; 4],
 }
 
-/// Where surfaces and pixels are found in a judged picture: `Judged` in WGSL.
+/// Transforms for finding surfaces and pixels in a judged picture: `Judged` in WGSL.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct JudgedUniform {
-    /// Clip space of the judged camera from world positions relative to the frame's eye.
+    /// Matrix clip of the judged camera from world positions relative to the frame's eye.
     pub clip_from_world: [[f32; 4]; 4],
-    /// Homogeneous world positions relative to the frame's eye from its normalised device coordinates, with its reversed
-    /// depth.
+    /// Homogeneous world positions relative to the frame's eye from its normalised device coordinates, with
+    /// its reversed depth.
     pub world_from_ndc: [[f32; 4]; 4],
     /// Width and height of the judged picture, in pixels.
     pub size: [f32; 2],
-    /// Its pixels for each pixel of the frame where both have the same camera; 0 where they do not.
+    /// Judged pixels per pixel of the frame if both have the same camera; otherwise 0.
     pub scale: [f32; 2],
-    /// View depth of the judged camera's near plane, in metres; 0 where its depth buffer is not known.
+    /// View depth of the judged camera's near plane, in metres; 0 if its depth buffer is not used.
     pub near: f32,
-    /// That of its far plane.
+    /// View depth of its far plane, in metres.
     pub far: f32,
     /// Width and height of the frame's picture, in pixels.
     pub viewport: [f32; 2],
 }
 
-/// How wrong pixels are marked: `Marks` in WGSL.
+/// Style of the marks on wrong pixels: `Marks` in WGSL.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct MarksUniform {
@@ -226,13 +225,13 @@ pub struct MarksUniform {
     pub strength: f32,
     /// 1 for outlines, 0 for filled marks.
     pub outline: u32,
-    /// Classes that are marked: bit i for class i.
+    /// Marked classes: bit i for class i.
     pub classes: u32,
     /// Keeps the struct a multiple of 16 bytes.
     pub padding: u32,
 }
 
-/// Which texels of a map are read back: `Block` in WGSL.
+/// Texels of a map that are read back: `Block` in WGSL.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct BlockUniform {

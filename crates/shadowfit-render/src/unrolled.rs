@@ -1,26 +1,26 @@
-//! How a probe's triangles get their numbers. Fragments know their primitive on most graphics cards, but not in browsers:
-//! there parts are drawn without their indices, so that vertices 3 i to 3 i + 2 are those of triangle i.
+//! Numbering of a probe's triangles. On most graphics cards fragments have a primitive index, but not in
+//! browsers. There parts are drawn without indices, so that triangle i has the vertices 3 i to 3 i + 2.
 
 use crate::Gpu;
 use crate::formats::STRIDES;
 use crate::upload::Upload;
 
-/// What a probe's triangles are numbered by.
+/// Source of a probe's triangle numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Numbering {
-    /// By the primitive index of fragment shaders.
+    /// The primitive index of fragment shaders.
     Primitives,
-    /// By the vertices of parts that are drawn without their indices.
+    /// The vertex index of parts that are drawn without indices.
     Vertices,
 }
 
 impl Numbering {
-    /// By vertices where a device has no [`wgpu::Features::PRIMITIVE_INDEX`].
+    /// Returns the numbering for a device: by vertices if it lacks [`wgpu::Features::PRIMITIVE_INDEX`].
     pub fn of(device: &wgpu::Device) -> Self {
         if device.features().contains(wgpu::Features::PRIMITIVE_INDEX) { Self::Primitives } else { Self::Vertices }
     }
 
-    /// The vertex entry point of probes, where pictures have another.
+    /// Returns the vertex entry point of probes. `of_pictures` is the entry point of pictures.
     pub const fn vertex_entry(self, of_pictures: &'static str) -> &'static str {
         match self {
             Self::Primitives => of_pictures,
@@ -28,7 +28,7 @@ impl Numbering {
         }
     }
 
-    /// What WGSL must begin with.
+    /// Returns the directives that WGSL must begin with.
     pub const fn directive(self) -> &'static str {
         match self {
             Self::Primitives => "enable primitive_index;\n",
@@ -40,14 +40,14 @@ impl Numbering {
 /// Vertices of a part in the order of its indices.
 #[derive(Clone, Debug)]
 pub(crate) struct Unrolled {
-    /// Those that have an element for each vertex.
+    /// Streams that have an element for each vertex.
     streams: [Option<wgpu::Buffer>; 4],
     vertices: u32,
 }
 
 impl Unrolled {
-    /// Unrolls a part's streams, which are as [`part_buffers`](crate::passes::part_buffers) has them; `None` where there is
-    /// a single element.
+    /// Unrolls a part's streams, in the order of [`part_buffers`](crate::passes::part_buffers). `None` for
+    /// streams with a single element.
     pub(crate) fn new(upload: &Upload<'_>, indices: &[u32], streams: [Option<&[u8]>; 4]) -> Self {
         let mut strides = STRIDES.into_iter();
         let streams = streams.map(|stream| {
@@ -57,7 +57,7 @@ impl Unrolled {
         Self { streams, vertices: indices.len() as u32 }
     }
 
-    /// Rewrites positions, normals and tangents, where there are any.
+    /// Rewrites positions, normals and tangents, if there are any.
     pub(crate) fn write(&self, gpu: &Gpu, indices: &[u32], streams: [&[u8]; 3]) {
         for ((buffer, stream), stride) in self.streams.iter().zip(streams).zip(STRIDES) {
             if let Some(buffer) = buffer.as_ref().filter(|_| !stream.is_empty()) {
@@ -66,7 +66,7 @@ impl Unrolled {
         }
     }
 
-    /// Draws it; `streams` are those of the part, which have the single elements.
+    /// Draws the part. `streams` are the part's streams, used for the single elements.
     pub(crate) fn draw(
         &self,
         pass: &mut wgpu::RenderPass<'_>,

@@ -1,16 +1,16 @@
-//! Vertices, indices and images on their way to the GPU, piece by piece. Where the device has no memory for one of them,
-//! nothing more is given to it: it would be lost, if it had none left for small things either.
+//! Upload of vertices, indices and images to the GPU, in pieces. Once the device is out of memory, nothing
+//! more is uploaded: without memory for small allocations, it would be lost.
 
 use std::cell::RefCell;
 
 use crate::{DeviceFault, Gpu};
 
-/// Bytes that are on their way at a time: each of them is held twice meanwhile.
+/// Bytes in transit at a time. Each of them is held twice meanwhile.
 const PIECE: usize = 16 << 20;
 /// Bytes of an empty buffer.
 const LEAST: u64 = 4;
 
-/// What a scene is uploaded through.
+/// Upload of a scene.
 pub(crate) struct Upload<'a> {
     pub(crate) gpu: &'a Gpu,
     fault: RefCell<Option<DeviceFault>>,
@@ -21,7 +21,7 @@ impl<'a> Upload<'a> {
         Self { gpu, fault: RefCell::default() }
     }
 
-    /// What was uploaded, unless something could not be.
+    /// Returns the uploaded value, unless there was a fault.
     pub(crate) fn result<T>(self, uploaded: T) -> Result<T, DeviceFault> {
         match self.fault.into_inner() {
             Some(fault) => Err(fault),
@@ -29,7 +29,7 @@ impl<'a> Upload<'a> {
         }
     }
 
-    /// A buffer of these bytes; one that is not used after a fault.
+    /// Creates a buffer with these bytes. After a fault it is an unused placeholder.
     pub(crate) fn buffer(&self, usage: wgpu::BufferUsages, bytes: &[u8]) -> wgpu::Buffer {
         let empty = |size| {
             self.gpu.device.create_buffer(&wgpu::BufferDescriptor {
@@ -49,7 +49,7 @@ impl<'a> Upload<'a> {
         buffer
     }
 
-    /// A texture whose first level has these rows of pixels of four bytes; `None` after a fault.
+    /// Creates a texture whose first level has these rows of four-byte pixels; `None` after a fault.
     pub(crate) fn texture(&self, descriptor: &wgpu::TextureDescriptor<'_>, rgba: &[u8]) -> Option<wgpu::Texture> {
         let texture = self.make(|| self.gpu.device.create_texture(descriptor))?;
         let row = descriptor.size.width as usize * 4;
@@ -78,10 +78,10 @@ impl<'a> Upload<'a> {
         self.gpu.try_making(make).map_err(|error| *fault = Some(error)).ok()
     }
 
-    /// Waits until all has arrived.
+    /// Waits until all uploads have arrived.
     fn send(&self) {
         self.gpu.submit([]);
-        // A device that was lost is reported where it is drawn with.
+        // A lost device is reported when it is used for drawing.
         let _ = self.gpu.device.poll(wgpu::PollType::wait_indefinitely());
     }
 }

@@ -31,7 +31,7 @@ impl VertexBuffer {
         self.count = instances.len() as u32;
     }
 
-    /// Draws as many vertices for each instance, if there are any.
+    /// Draws `vertices` vertices for each instance, if there are any instances.
     pub(crate) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, pipeline: &wgpu::RenderPipeline, vertices: u32) {
         if self.count > 0 {
             pass.set_pipeline(pipeline);

@@ -1,4 +1,4 @@
-//! How much a thread does, and how long it waits for the GPU.
+//! Work of a thread, and its time spent waiting for the GPU.
 
 use std::cell::Cell;
 use std::time::Duration;
@@ -7,25 +7,25 @@ use web_time::Instant;
 
 std::thread_local! {
     static WAITED: Cell<Spent> = const { Cell::new(Spent::ZERO) };
-    /// How many things were made that later frames use again.
+    /// Number of created objects that later frames reuse.
     static MADE: Cell<u64> = const { Cell::new(0) };
 }
 
 /// Time that a thread has spent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Spent {
-    /// By the wall's clock.
+    /// Wall-clock time.
     pub wall: Duration,
-    /// In which a core worked for it; the same as the wall's on systems that do not tell.
+    /// CPU time of the thread. Equal to the wall-clock time if the system does not report it.
     pub cpu: Duration,
-    /// Whether something was made in it that later frames use again: pipelines, targets, buffers of a scene.
+    /// Whether objects were created that later frames reuse: pipelines, targets, buffers of a scene.
     pub is_making: bool,
 }
 
 impl Spent {
     const ZERO: Self = Self { wall: Duration::ZERO, cpu: Duration::ZERO, is_making: false };
 
-    /// Both together.
+    /// Returns the sum of both.
     #[must_use]
     pub fn plus(self, other: Self) -> Self {
         let is_making = self.is_making || other.is_making;
@@ -57,7 +57,7 @@ impl Clock {
     }
 }
 
-/// How long a core has worked for this thread; `None` on systems that do not tell.
+/// Returns the CPU time of this thread; `None` if the system does not report it.
 fn cpu() -> Option<Duration> {
     #[cfg(target_os = "linux")]
     return rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime).try_into().ok();
@@ -65,7 +65,7 @@ fn cpu() -> Option<Duration> {
     None
 }
 
-/// Does something that waits for the GPU.
+/// Runs work that waits for the GPU.
 pub(crate) fn waiting<T>(wait: impl FnOnce() -> T) -> T {
     let clock = Clock::start();
     let result = wait();
@@ -73,14 +73,13 @@ pub(crate) fn waiting<T>(wait: impl FnOnce() -> T) -> T {
     result
 }
 
-/// Makes something that later frames use again.
+/// Creates an object that later frames reuse.
 pub(crate) fn making<T>(make: impl FnOnce() -> T) -> T {
     MADE.set(MADE.get() + 1);
     make()
 }
 
-/// Does something, and returns how long that took this thread without its waits for the GPU, in read-backs and
-/// submissions.
+/// Runs work, and returns its time on this thread without waits for the GPU in read-backs and submissions.
 pub fn own_time<T>(work: impl FnOnce() -> T) -> (T, Spent) {
     let (clock, waited, made) = (Clock::start(), WAITED.get(), MADE.get());
     let done = work();

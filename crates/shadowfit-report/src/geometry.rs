@@ -1,4 +1,4 @@
-//! Triangles of the scenes that fits are compared on: from their glTF files, or from plain files of triangles.
+//! Triangles of the scenes for comparing fits, from glTF files or from plain files of triangles.
 
 use std::path::{Path, PathBuf};
 
@@ -8,20 +8,20 @@ use shadowfit_scene::load_gltf;
 
 use crate::peers::{Ground, Scene};
 
-/// Boxes may differ by this share of the scene's size: transforms are composed in f32.
+/// Allowed difference of boxes, as a share of the scene's size: transforms are composed in f32.
 const TOLERANCE: f64 = 1e-6;
 /// Bytes of a triangle in a plain file: nine little-endian f32.
 const TRIANGLE_BYTES: usize = 36;
 
-/// Corners, world space, metres.
+/// Corners of a triangle, world space, metres.
 pub type Corners = [Vec3; 3];
 
-/// Where the triangles come from: one of these two folders, if triangles are needed.
+/// Source of the triangles: one of these two folders, if triangles are needed.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "program", derive(clap::Args))]
 #[cfg_attr(feature = "program", group(required = false, multiple = false))]
 pub struct Source {
-    /// Folder that the scenes' glTF files are in
+    /// Folder of the scenes' glTF files
     #[cfg_attr(feature = "program", arg(long, value_name = "DIR"))]
     pub assets: Option<PathBuf>,
     /// Folder with SCENE.f32 for each scene: 9 little-endian f32 for each triangle, world space, metres
@@ -30,11 +30,11 @@ pub struct Source {
 }
 
 impl Source {
-    /// The file that the triangles of a scene are read from.
+    /// Returns the file with the triangles of a scene.
     ///
     /// # Errors
     ///
-    /// When no folder was given, or the scene has no glTF file and no folder of plain files was given.
+    /// If no folder was given, or the scene has no glTF file and no folder of plain files was given.
     pub fn file(&self, scene: &Scene) -> Result<PathBuf> {
         let Scene { name, file, .. } = scene;
         match (&self.triangles, &self.assets, file) {
@@ -48,12 +48,12 @@ impl Source {
         }
     }
 
-    /// The triangles of a scene, world space, metres: a list for each object in the order of [`Scene::objects`], or a
-    /// single list from a plain file, which knows no objects.
+    /// Returns the triangles of a scene, world space, metres: a list for each object in the order of
+    /// [`Scene::objects`], or a single list from a plain file, which has no objects.
     ///
     /// # Errors
     ///
-    /// As for [`Self::file`], and when the file cannot be read, or its triangles are not those of the scenarios.
+    /// As for [`Self::file`], and if the file cannot be read, or its triangles differ from the scenarios.
     pub fn read(&self, scene: &Scene) -> Result<Vec<Vec<Corners>>> {
         let file = self.file(scene)?;
         let at = || format!("{}: scene \"{}\"", file.display(), scene.name);
@@ -70,7 +70,7 @@ impl Source {
 
 fn read_gltf(file: &Path, scene: &Scene) -> Result<Vec<Vec<Corners>>> {
     let loaded = load_gltf(file)?;
-    // One object for each node with a mesh; nodes are depth first.
+    // One object for each node with a mesh. Nodes are in depth-first order.
     let mut object_of_node = vec![usize::MAX; loaded.nodes.len()];
     let mut objects = Vec::new();
     for (node, _) in loaded.nodes.iter().enumerate().filter(|(_, node)| node.mesh.is_some()) {
@@ -105,15 +105,15 @@ fn read_plain(file: &Path) -> Result<Vec<Corners>> {
     Ok((0..length / TRIANGLE_BYTES).map(|triangle| [0, 3, 6].map(|offset| corner(triangle * 9 + offset))).collect())
 }
 
-/// Compares with what the scenarios say of the scene as a whole.
+/// Compares all triangles with the scenarios' data of the scene.
 fn check_whole(scene: &Scene, objects: &[Vec<Corners>]) -> Result<()> {
-    // Import leaves out triangles without area, which no ray meets.
+    // Import drops triangles without area, which no ray hits.
     let triangles: usize = objects.iter().map(Vec::len).sum();
     ensure!(triangles <= scene.triangles, "{triangles} triangles, but the scenarios say {}", scene.triangles);
     compare(objects.iter().flatten(), &scene.aabb, tolerance(scene)).context("aabb")
 }
 
-/// Compares with what the scenarios say of each object.
+/// Compares the objects with the scenarios' data of each object.
 fn check_objects(scene: &Scene, objects: &[Vec<Corners>]) -> Result<()> {
     let count = objects.len();
     ensure!(count == scene.objects.len(), "{count} objects, but the scenarios say {}", scene.objects.len());
@@ -123,7 +123,7 @@ fn check_objects(scene: &Scene, objects: &[Vec<Corners>]) -> Result<()> {
     Ok(())
 }
 
-/// How far boxes may differ, in metres.
+/// Returns the allowed difference of boxes, in metres.
 fn tolerance(scene: &Scene) -> f64 {
     let [low, high] = corners_of(&scene.aabb);
     (high - low).length() * TOLERANCE

@@ -1,21 +1,23 @@
-//! How wrong sun shadows are, measured against rays: the library of the program `shadowfit-report`.
+//! Measures the errors of sun shadows against rays: the library of the program `shadowfit-report`.
 //!
 //! | module | purpose |
 //! |---|---|
 //! | [`contestant`] | judges the pictures of any renderer, or its matrices |
-//! | [`peers`] | reads files of scenarios and of fits, and ranks the fits by what their maps cover and sample |
+//! | [`engines`] | the shadow fits of Bevy, three.js and Babylon.js |
+//! | [`peers`] | reads files of scenarios and of fits, and ranks the fits by how well their maps cover and sample |
 //! | [`geometry`] | reads the triangles of the scenarios |
 //! | [`run`], [`tables`] | the data of a finished report, as Markdown and as JSON |
 //! | `page` (feature `page`) | marked pictures, plots, and the page that shows them |
 //!
-//! The feature `program`, which is on by default, builds the program, which draws with the renderer of the viewer.
-//! Other renderers turn it off:
+//! The default feature `program` builds the program, which uses the viewer's renderer. Other renderers turn
+//! it off:
 //!
 //! ```toml
 //! shadowfit-report = { path = "../shadowfit-report", default-features = false, features = ["page"] }
 //! ```
 
 pub mod contestant;
+pub mod engines;
 pub mod geometry;
 mod markdown;
 #[cfg(feature = "page")]
@@ -27,7 +29,7 @@ pub mod tables;
 #[cfg(any(test, fuzzing))]
 #[doc(hidden)]
 pub mod fuzzed {
-    //! Functions that fuzzing calls; no other build has them.
+    //! Functions for fuzzing. Other builds do not contain them.
     pub use crate::peers::fuzzed::fit_file;
 }
 

@@ -2,8 +2,8 @@
 
 use std::fmt::Write;
 
-/// A table in Markdown, from the names of its columns and the cells of each row. The first column is aligned to the left,
-/// the others to the right.
+/// Returns a Markdown table from the names of its columns and the cells of each row. The first column is
+/// left-aligned, the others are right-aligned.
 pub fn markdown_table(columns: &[String], rows: impl Iterator<Item = Vec<String>>) -> String {
     let mut text = format!("| {} |\n|---|{}\n", columns.join(" | "), "---:|".repeat(columns.len().saturating_sub(1)));
     for cells in rows {
@@ -12,7 +12,7 @@ pub fn markdown_table(columns: &[String], rows: impl Iterator<Item = Vec<String>
     text
 }
 
-/// A readable number: three digits and at most four decimals; a dash where the value is not a number.
+/// Returns a readable number with three significant digits and at most four decimals, or a dash for NaN.
 pub fn readable(value: f64) -> String {
     if !value.is_finite() {
         return if value.is_nan() { "-".to_owned() } else { value.to_string() };

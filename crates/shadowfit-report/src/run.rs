@@ -1,6 +1,6 @@
-//! What a finished run is, as plain data.
+//! The data of a finished run.
 //!
-//! Rendering and measuring fill it; tables, plots and the page are made from it alone, so that they can be tested
+//! Rendering and measuring fill it. Tables, plots and the page depend only on it, so that they can be tested
 //! without a GPU.
 
 use std::path::PathBuf;
@@ -8,10 +8,10 @@ use std::path::PathBuf;
 use serde::{Serialize, Serializer};
 use shadowfit_params::tool::LightSettings;
 
-/// Names of columns, such as `wrong %`, and their values; not a number where nothing could be measured.
+/// Names of columns, such as `wrong %`, and their values. A value that could not be measured is NaN.
 pub type Columns = Vec<(String, f64)>;
 
-/// The column that techniques are ranked by.
+/// The column for ranking techniques.
 pub const WRONG: &str = "wrong %";
 
 /// Techniques compared over the frames of a path.
@@ -25,84 +25,84 @@ pub struct Run {
     pub triangles: u64,
     /// Width and height of the pictures, in pixels.
     pub size: [u32; 2],
-    /// The graphics adapter that rendered.
+    /// Graphics adapter that rendered.
     pub adapter: String,
-    /// The sun, if it is one and the same in all frames.
+    /// The sun, if it is the same in all frames.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub light: Option<LightSettings>,
-    /// What the reader should know of the measurement, whole sentences.
+    /// Remarks on the measurement, in whole sentences.
     pub notes: Vec<String>,
-    /// What import skipped, replaced or repaired, which the pictures then lack.
+    /// Parts of the scene that import skipped, replaced or repaired. The pictures may lack them.
     pub scene_notes: Vec<String>,
     /// Frames that were measured, in their order.
     pub frames: Vec<FrameInfo>,
     /// Techniques, one for each row of the tables.
     pub techniques: Vec<TechniqueRun>,
-    /// False when it was stopped early.
+    /// Whether all frames were measured. False if the run was stopped early.
     pub finished: bool,
 }
 
 /// A frame of the path.
 #[derive(Clone, Debug, Serialize)]
 pub struct FrameInfo {
-    /// Such as `orbit/3`.
+    /// Name, such as `orbit/3`.
     pub name: String,
     /// Part of the path, such as `orbit`.
     pub group: String,
 }
 
-/// What was measured of one technique. All lists of columns have the same names in the same order.
+/// The results of one technique. All lists of columns have the same names in the same order.
 #[derive(Clone, Debug, Serialize)]
 pub struct TechniqueRun {
     /// Name in tables.
     pub name: String,
-    /// What it is, in a sentence.
+    /// Description in a sentence.
     pub what: String,
-    /// TOML to show.
+    /// Settings as TOML, for display.
     pub settings: String,
-    /// All frames pooled.
+    /// Columns of all frames pooled.
     #[serde(serialize_with = "as_map")]
     pub overall: Columns,
-    /// The frames of each group pooled.
+    /// Columns of each group, with its frames pooled.
     #[serde(serialize_with = "as_map_of_maps")]
     pub groups: Vec<(String, Columns)>,
-    /// Each frame, in the order of [`Run::frames`].
+    /// Columns of each frame, in the order of [`Run::frames`].
     #[serde(serialize_with = "as_maps")]
     pub frames: Vec<Columns>,
     /// Pictures of some frames.
     pub pictures: Vec<FramePictures>,
 }
 
-/// Pictures of a frame, PNG files relative to the output folder.
+/// Pictures of a frame: PNG files, relative to the output folder.
 #[derive(Clone, Debug, Serialize)]
 pub struct FramePictures {
-    /// Place in [`Run::frames`].
+    /// Index in [`Run::frames`].
     pub frame: usize,
-    /// Wrong pixels marked.
+    /// Picture with marked wrong pixels.
     pub overlay: PathBuf,
-    /// Pixels per texel.
+    /// Heat map of pixels per texel.
     pub heat: PathBuf,
-    /// As rendered.
+    /// Picture as rendered.
     pub picture: PathBuf,
 }
 
-/// Which values of a column are the good ones.
+/// The good end of a column's values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Better {
     /// Low values are good.
     Lower,
     /// High values are good.
     Higher,
-    /// It describes, and says nothing about quality.
+    /// The column describes a technique without rating it.
     Neither,
 }
 
-/// The value of a column, if it is there and a number.
+/// Returns the value of a column, if it exists and is not NaN.
 pub fn value(columns: &Columns, name: &str) -> Option<f64> {
     columns.iter().find(|(known, _)| known == name).map(|(_, value)| *value).filter(|value| !value.is_nan())
 }
 
-/// Which values of a column are the good ones: errors, sizes and times are low in a good technique.
+/// Returns the good end of a column's values. Errors, sizes and times are low in a good technique.
 pub fn better(column: &str) -> Better {
     match column {
         "used %" | "still %" | "kept %" => Better::Higher,
@@ -111,10 +111,16 @@ pub fn better(column: &str) -> Better {
     }
 }
 
-/// What a column means, in a sentence; `None` for one that is not known here.
+/// Returns the meaning of a column in a sentence, or `None` for an unknown column.
 pub fn meaning(column: &str) -> Option<&'static str> {
     Some(match column {
         "wrong %" => "Pixels that face the light and whose verdict, lit or shadowed, differs from the ray-traced truth",
+        "light error %" => {
+            "Mean of |factor − truth| · N·L over the mean of N·L: the error in per cent of the sunlight that arrives without shadows"
+        }
+        "flip" => {
+            "ꟻLIP error (0 to 1) between the shaded picture and the same picture with ray-traced shadows: how much people see"
+        }
         "false shadow %" => "Lit in truth, shadowed by the map, away from shadow edges: acne",
         "false light %" => "Shadowed in truth, lit by the map though an occluder is in it: peter-panning, leaks",
         "hole %" => "Shadowed in truth, lit because no occluder is in the map, or no map covers the point",
@@ -123,7 +129,7 @@ pub fn meaning(column: &str) -> Option<&'static str> {
         "edge px" => "Mean distance from true shadow edges to those of the map, in pixels, at most 32",
         "mean error %" => "Mean difference between the filtered factor and the truth",
         "grazing %" => "Pixels that the light barely grazes (cosine below 0.05); they count in all but the ppt columns",
-        "grazing wrong %" => "Wrong pixels among those, of all that face the light",
+        "grazing wrong %" => "Wrong pixels among the grazing ones, as a share of all that face the light",
         "ppt p50" => "Screen pixels per shadow texel along the worse axis, median",
         "ppt p95" => "Screen pixels per shadow texel along the worse axis, 95% quantile; 1 or less is sharp",
         "ppt p99" => "Screen pixels per shadow texel along the worse axis, 99% quantile",
@@ -131,8 +137,8 @@ pub fn meaning(column: &str) -> Option<&'static str> {
         "crawl %" => "Edge points whose verdict changes though only the camera moved: shimmering",
         "change %" => "Mean change of the shadow at the same points though only the camera moved",
         "area error %" => "Mean difference from the light on the pixel's whole area, where it shows one surface",
-        "area error several %" => "The same where a pixel shows several surfaces",
-        "traced %" => "Facing pixels whose edges took rays",
+        "area error several %" => "Mean difference from the light on the pixel's area, where it shows several surfaces",
+        "traced %" => "Facing pixels that were decided by rays",
         "uncov %" => "Points that face the light and that no map holds",
         "missed %" => "Points that face the light and lie outside of the map that is read for them",
         "crit res" => "Side of a map, in texels, that would give 95% of the points a texel per pixel",
@@ -142,14 +148,15 @@ pub fn meaning(column: &str) -> Option<&'static str> {
     })
 }
 
-/// The value that tables order and frames are picked by: the mean of wrong % over the techniques at a frame.
+/// Returns the mean of wrong % over the techniques at a frame. Tables and the choice of frames use it.
 fn wrong_at(run: &Run, frame: usize) -> Option<f64> {
     let values: Vec<f64> =
         run.techniques.iter().filter_map(|technique| value(technique.frames.get(frame)?, WRONG)).collect();
     (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
 }
 
-/// The worst, the median and the best of some frames, by the mean of wrong % over the techniques, each once.
+/// Returns the worst, the median and the best of some frames, each once, by the mean of wrong % over the
+/// techniques.
 pub fn telling(run: &Run, frames: impl Iterator<Item = usize>) -> Vec<(usize, &'static str)> {
     let mut ranked: Vec<(usize, f64)> = frames.filter_map(|frame| Some((frame, wrong_at(run, frame)?))).collect();
     ranked.sort_by(|a, b| b.1.total_cmp(&a.1));
@@ -163,7 +170,7 @@ pub fn telling(run: &Run, frames: impl Iterator<Item = usize>) -> Vec<(usize, &'
     chosen
 }
 
-/// A map in the order of the columns, `null` for values that are not numbers.
+/// Serializes columns as a map in their order, with `null` for values that are not numbers.
 struct Map<'a>(&'a Columns);
 
 impl Serialize for Map<'_> {
@@ -188,7 +195,8 @@ fn as_maps<S: Serializer>(frames: &[Columns], serializer: S) -> Result<S::Ok, S:
 pub(crate) mod tests {
     use super::*;
 
-    /// Two techniques over an orbit of three frames and a flight of two; the second is better but for its false light.
+    /// Returns a run of two techniques over an orbit of three frames and a flight of two. The second
+    /// technique is better in all columns except its false light.
     pub(crate) fn run() -> Run {
         let frame = |name: &str| FrameInfo { name: name.into(), group: name.split('/').next().unwrap_or(name).into() };
         Run {

@@ -1,6 +1,6 @@
-//! The tables of a run: Markdown for people and JSON for programs.
+//! The tables of a run, as Markdown for people and JSON for programs.
 //!
-//! Techniques are rows, and the best value of each column is bold, so that a reader finds the trade-offs at a glance.
+//! Techniques are rows. The best value of each column is bold, to show the trade-offs.
 
 use std::fmt::Write;
 use std::iter;
@@ -10,10 +10,11 @@ use anyhow::Result;
 use crate::markdown::{markdown_table, readable};
 use crate::run::{Better, Columns, Run, better};
 
-/// Heading of the list of what import skipped, replaced or repaired.
+/// Heading of the list of scene parts that import skipped, replaced or repaired.
 pub(crate) const SCENE_NOTES: &str = "Notes on the scene";
 
-/// Text of a value, and whether it is the best of its column; unequal numbers that read the same are equally good.
+/// Text of a value, and whether it is the best of its column. Unequal numbers with equal texts are equally
+/// good.
 type Cell = (String, bool);
 
 /// A table of techniques.
@@ -21,11 +22,11 @@ type Cell = (String, bool);
 pub(crate) struct Table {
     pub(crate) title: String,
     pub(crate) columns: Vec<String>,
-    /// Name of a technique and its values as text, with whether each is the best of its column.
+    /// Name of each technique and its cells.
     pub(crate) rows: Vec<(String, Vec<Cell>)>,
 }
 
-/// The tables of a run: all frames, then each group.
+/// Returns the tables of a run: all frames, then each group.
 pub(crate) fn tables(run: &Run) -> Vec<Table> {
     let overall = run.techniques.iter().map(|technique| (technique.name.as_str(), Some(&technique.overall)));
     let mut tables = vec![table("All frames", &overall.collect::<Vec<_>>())];
@@ -45,17 +46,17 @@ pub(crate) fn tables(run: &Run) -> Vec<Table> {
     tables
 }
 
-/// Returns all data of a run as JSON, keys in the order of the fields and columns; `null` for values that are not
-/// numbers.
+/// Returns all data of a run as JSON, with keys in the order of fields and columns. Values that are not
+/// numbers are `null`.
 ///
 /// # Errors
 ///
-/// Never, unless memory runs out.
+/// Only if memory runs out.
 pub fn to_json(run: &Run) -> Result<String> {
     Ok(serde_json::to_string_pretty(run)? + "\n")
 }
 
-/// The run's facts and tables.
+/// Returns the run's facts and tables as Markdown.
 pub fn to_markdown(run: &Run) -> String {
     let mut text = format!("# {}\n\n", escape(&run.title));
     if !run.finished {
@@ -85,7 +86,7 @@ pub fn to_markdown(run: &Run) -> String {
     text
 }
 
-/// What a reader should know of a run before its numbers.
+/// Returns the facts that a reader needs before the numbers of a run.
 pub(crate) fn facts(run: &Run) -> Vec<(&'static str, String)> {
     let [width, height] = run.size;
     let mut facts = vec![
@@ -100,9 +101,9 @@ pub(crate) fn facts(run: &Run) -> Vec<(&'static str, String)> {
     facts
 }
 
-/// What a run that was stopped early lacks.
+/// Returns the note about a run that was stopped early.
 pub(crate) fn stopped(run: &Run) -> String {
-    format!("the figures are of the {} frames that were measured until then.", run.frames.len())
+    format!("the figures cover the {} frames that were measured before.", run.frames.len())
 }
 
 fn table(title: &str, rows: &[(&str, Option<&Columns>)]) -> Table {
@@ -129,7 +130,7 @@ fn table(title: &str, rows: &[(&str, Option<&Columns>)]) -> Table {
     Table { title: title.to_owned(), columns, rows }
 }
 
-/// The text of a column's best value; `None` where there is nothing to choose from.
+/// Returns the text of a column's best value, or `None` if there is no difference.
 fn best(column: &str, values: impl Iterator<Item = f64>) -> Option<String> {
     let mut values: Vec<f64> = values.filter(|value| !value.is_nan()).collect();
     values.sort_by(f64::total_cmp);
@@ -150,7 +151,7 @@ fn markdown(table: &Table) -> String {
     markdown_table(&columns, rows)
 }
 
-/// A whole number with spaces between its thousands.
+/// Returns a whole number with spaces between its thousands.
 fn grouped(number: u64) -> String {
     let digits = number.to_string();
     let first = digits.len() % 3;
@@ -159,7 +160,7 @@ fn grouped(number: u64) -> String {
     head.into_iter().chain(rest).collect::<Vec<_>>().join(" ")
 }
 
-/// Text that Markdown shows as it is, in one line.
+/// Escapes text for one line of Markdown.
 fn escape(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for character in text.chars() {
@@ -173,7 +174,7 @@ fn escape(text: &str) -> String {
     escaped
 }
 
-/// Length of the longest run of backticks, which a fence around the text must exceed.
+/// Returns the length of the longest run of backticks. A fence around the text must be longer.
 fn longest_fence(text: &str) -> usize {
     text.split(|character| character != '`').map(str::len).max().unwrap_or(0)
 }
@@ -230,10 +231,7 @@ mod tests {
     #[test]
     fn a_run_that_was_stopped_says_so_first() {
         let text = to_markdown(&Run { finished: false, ..run() });
-        assert!(
-            text.starts_with("# Courtyard \\<1\\>\n\n**Stopped early:** the figures are of the 5 frames"),
-            "{text}"
-        );
+        assert!(text.starts_with("# Courtyard \\<1\\>\n\n**Stopped early:** the figures cover the 5 frames"), "{text}");
     }
 
     #[test]

@@ -1,9 +1,9 @@
-//! How far CPU and GPU agree about the same pictures.
+//! Agreement between the CPU's and the GPU's judgement of the same pictures.
 
 use shadowfit_truth::gpu::GpuPixel;
 use shadowfit_truth::{Class, Judged};
 
-/// How far the classes of the GPU and of the CPU agree, over any number of pictures.
+/// Agreement between the classes of the GPU and of the CPU, over any number of pictures.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Agreement {
     judged: u64,
@@ -32,22 +32,22 @@ impl Agreement {
         }
     }
 
-    /// Number of pixels that either judged.
+    /// Returns the number of pixels that the CPU or the GPU judged.
     pub fn pixels(&self) -> u64 {
         self.judged
     }
 
-    /// Share of all judged pixels that have the same class, 0..=1; 1 without any.
+    /// Returns the share of all judged pixels that have the same class, 0..=1; 1 without pixels.
     pub fn all(&self) -> f64 {
         share(self.same, self.judged)
     }
 
-    /// The same for pixels outside the CPU's edge zone.
+    /// Returns the share for pixels outside the CPU's edge zone.
     pub fn off_edges(&self) -> f64 {
         share(self.same_off_edges, self.judged_off_edges)
     }
 
-    /// Share of all judged pixels that both put into the edge zone, or both do not.
+    /// Returns the share of all judged pixels on whose edge zone both agree.
     pub fn edge_zone(&self) -> f64 {
         share(self.same_edge_zone, self.judged)
     }

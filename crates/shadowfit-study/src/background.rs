@@ -1,13 +1,13 @@
-//! Work that nobody waits for: on a thread, or in a browser, which has none, between two frames.
+//! Background work: on a thread, or between two frames in a browser, which has no threads.
 
 use std::io;
 
-/// Does work in the background, on a thread of this name. In a browser it runs once the present frame is done, and
+/// Runs work in the background, on a thread with this name. In a browser it runs after the current frame, and
 /// frames wait for it.
 ///
 /// # Errors
 ///
-/// When the system gives no thread.
+/// If the system cannot start a thread.
 pub fn in_background(name: &str, work: impl FnOnce() + Send + 'static) -> io::Result<()> {
     #[cfg(not(target_family = "wasm"))]
     return std::thread::Builder::new().name(name.to_owned()).spawn(work).map(drop);
@@ -22,11 +22,11 @@ pub fn in_background(name: &str, work: impl FnOnce() + Send + 'static) -> io::Re
     }
 }
 
-/// The same for work that waits now and then, which is when a browser goes on with frames.
+/// Runs asynchronous work in the background. While it waits, a browser goes on with frames.
 ///
 /// # Errors
 ///
-/// When the system gives no thread.
+/// If the system cannot start a thread.
 #[cfg(not(target_family = "wasm"))]
 pub fn in_background_async<F: Future<Output = ()>>(
     name: &str,
@@ -35,11 +35,11 @@ pub fn in_background_async<F: Future<Output = ()>>(
     in_background(name, || pollster::block_on(work()))
 }
 
-/// The same for work that waits now and then, which is when a browser goes on with frames.
+/// Runs asynchronous work in the background. While it waits, a browser goes on with frames.
 ///
 /// # Errors
 ///
-/// None in a browser.
+/// Never, in a browser.
 #[cfg(target_family = "wasm")]
 pub fn in_background_async<F: Future<Output = ()> + 'static>(
     _: &str,
@@ -49,7 +49,7 @@ pub fn in_background_async<F: Future<Output = ()> + 'static>(
     Ok(())
 }
 
-/// Lets a browser draw and take input before what follows; elsewhere nothing waits.
+/// Lets a browser draw and take input. Returns at once on other platforms.
 pub async fn next_turn() {
     #[cfg(target_family = "wasm")]
     gloo_timers::future::TimeoutFuture::new(0).await;

@@ -1,8 +1,8 @@
-//! Judges pictures on threads, with rays of the CPU: for adapters on which the passes of
-//! [`LiveTruth`](crate::LiveTruth) would stop the picture.
+//! Judges pictures on threads, with rays on the CPU, for adapters on which the passes of
+//! [`LiveTruth`](crate::LiveTruth) would block the picture.
 //!
-//! One core is left for drawing. Judging stops between two pixels when another picture is to be judged or the judge is
-//! dropped, and a panic becomes an error that can be shown.
+//! One core is left for drawing. Judging stops between two pixels if another picture is submitted or the
+//! judge is dropped. A panic becomes an error that can be shown.
 
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -23,16 +23,16 @@ use crate::{Judging, View};
 /// A judged picture.
 #[derive(Clone, Debug)]
 pub struct JudgeResult {
-    /// The verdicts, and the sums as [`Judged::tally`].
+    /// The verdicts. Their sums are in [`Judged::tally`].
     pub judged: Judged,
-    /// The same as texels, rows from the top: the bits of a [`GpuPixel`] for each pixel, ready to be written to an
-    /// `R32Uint` texture of [`Judging::size`].
+    /// The verdicts as texels, rows from the top: the bits of a [`GpuPixel`] for each pixel, ready to be
+    /// written to an `R32Uint` texture of [`Judging::size`].
     pub classes: Vec<u32>,
-    /// The view that was judged. A camera that has moved on shows other pixels.
+    /// The view that was judged. If the camera has moved since, it shows other pixels.
     pub view: View,
-    /// How it was judged.
+    /// Settings that it was judged with.
     pub judging: Judging,
-    /// How long it took, in seconds.
+    /// Duration, in seconds.
     pub seconds: f32,
 }
 
@@ -72,11 +72,11 @@ impl Drop for Work {
 }
 
 impl BackgroundJudge {
-    /// A judge with a thread for each core but one, and at least one thread.
+    /// Creates a judge with one thread less than there are cores, and at least one thread.
     ///
     /// # Errors
     ///
-    /// When the system gives no threads.
+    /// If the system cannot start threads.
     pub fn new() -> Result<Self> {
         let cores = thread::available_parallelism().map_or(1, Into::into);
         let threads = ThreadPoolBuilder::new()
@@ -87,7 +87,7 @@ impl BackgroundJudge {
         Ok(Self { threads, work: None })
     }
 
-    /// Starts to judge a picture, and stops with the one before if it is not done.
+    /// Starts to judge a picture, and cancels the previous one if it is not done.
     pub fn start(&mut self, job: JudgeJob) {
         let is_given_up = Arc::new(AtomicBool::new(false));
         let (sender, result) = channel();
@@ -96,26 +96,26 @@ impl BackgroundJudge {
             let goes_on = || !is_given_up.load(Ordering::Relaxed);
             let judged = catch_unwind(AssertUnwindSafe(|| job.judge(goes_on)));
             let judged = judged.unwrap_or_else(|panic| Err(anyhow!("judging this picture failed: {}", text(&*panic))));
-            // Nobody receives the result of a picture that was given up.
+            // If the picture was cancelled, there is no receiver.
             let _ = sender.send(judged);
         });
     }
 
-    /// Stops judging the present picture; [`Self::take`] gives no result of it.
+    /// Cancels the current picture. [`Self::take`] then returns no result for it.
     pub fn give_up(&mut self) {
         self.work = None;
     }
 
-    /// Whether a picture is being judged, or a result waits to be taken.
+    /// Returns whether a picture is being judged or a result can be taken.
     pub fn is_busy(&self) -> bool {
         self.work.is_some()
     }
 
-    /// Takes the judged picture, without waiting for it; `None` until there is one.
+    /// Takes the judged picture without waiting. Returns `None` if it is not done.
     ///
     /// # Errors
     ///
-    /// When the job does not fit together, or the judge failed at it.
+    /// If the parts of the job do not fit together, or judging failed.
     pub fn take(&mut self) -> Option<Result<JudgeResult>> {
         let result = match self.work.as_ref()?.result.try_recv() {
             Err(TryRecvError::Empty) => return None,
@@ -137,27 +137,27 @@ impl JudgeJob {
             Some((classes(truth, &judged), judged))
         };
         let truth = self.trace_while(&goes_on);
-        let (classes, judged) = truth.as_ref().and_then(judge).context("judging was given up")?;
+        let (classes, judged) = truth.as_ref().and_then(judge).context("judging was cancelled")?;
         let seconds = start.elapsed().as_secs_f32();
         Ok(JudgeResult { judged, classes, view: self.view, judging: self.judging, seconds })
     }
 
-    /// Refuses lists that do not belong together.
+    /// Returns an error if the sizes of the lists do not match.
     fn check(&self) -> Result<()> {
         let [width, height] = self.judging.size;
         let (wanted, given) = (u64::from(width) * u64::from(height), self.pixels.len());
-        ensure!(given as u64 == wanted, "a picture of {width} × {height} pixels has {wanted}, and {given} were given");
+        ensure!(given as u64 == wanted, "a picture of {width} × {height} needs {wanted} pixels, not {given}");
         let before = self.before.as_ref().map_or(given, |before| before.factors.len());
-        ensure!(before == given, "the frame before has {before} factors for {given} pixels");
+        ensure!(before == given, "the previous frame has {before} factors for {given} pixels");
         let last = (self.rays.tracer.len() as u32).checked_sub(1).and_then(|last| self.rays.instance(last));
         let instances = last.map_or(0, |last| last as usize + 1);
         let counted = self.counted.len();
-        ensure!(counted >= instances, "{counted} instances count or do not, and the scene has {instances}");
+        ensure!(counted >= instances, "`counted` has {counted} elements for {instances} instances");
         Ok(())
     }
 }
 
-/// The texels of a judged picture.
+/// Returns the texels of a judged picture.
 fn classes(truth: &Truth, judged: &Judged) -> Vec<u32> {
     let bits = |pixel: usize| {
         let pixel = GpuPixel {
@@ -172,10 +172,10 @@ fn classes(truth: &Truth, judged: &Judged) -> Vec<u32> {
     (0..judged.classes.len()).map(bits).collect()
 }
 
-/// The message of a panic.
+/// Returns the message of a panic.
 fn text(panic: &(dyn Any + Send)) -> &str {
     let owned = || panic.downcast_ref::<String>().map(String::as_str);
-    panic.downcast_ref::<&str>().copied().or_else(owned).unwrap_or("without a word")
+    panic.downcast_ref::<&str>().copied().or_else(owned).unwrap_or("without a message")
 }
 
 #[cfg(test)]
@@ -198,7 +198,7 @@ mod tests {
 
     const SIZE: [u32; 2] = [96, 54];
 
-    /// A picture of the default scene with few, coarse texels, drawn and ready to be judged.
+    /// A picture of the default scene with a coarse map, drawn and ready to be judged.
     struct Drawn {
         gpu: Gpu,
         scene: PreparedScene,
@@ -206,7 +206,7 @@ mod tests {
         evaluator: Evaluator,
     }
 
-    /// The same maps whatever frame came before.
+    /// Inputs with which the maps do not depend on previous frames.
     const UNTOLD: Inputs = Inputs { boxes: BoxSource::Clusters, visible_demand: false };
 
     impl Drawn {
@@ -284,16 +284,16 @@ mod tests {
         assert_eq!(wait(&mut judge).expect("judged").view, view(7.0, true));
         assert!(!judge.is_busy() && judge.take().is_none());
         let [job, _] = jobs;
-        let given_up = job.judge(|| false).expect_err("nothing was judged");
-        assert_eq!(given_up.to_string(), "judging was given up");
+        let given_up = job.judge(|| false).expect_err("it was cancelled");
+        assert_eq!(given_up.to_string(), "judging was cancelled");
         judge.start(job);
         let is_given_up = judge.work.as_ref().map(|work| Arc::clone(&work.is_given_up)).expect("it works");
         judge.give_up();
-        assert!(is_given_up.load(Ordering::Relaxed), "the threads are told");
+        assert!(is_given_up.load(Ordering::Relaxed), "the threads see the cancellation");
         assert!(!judge.is_busy() && judge.take().is_none());
     }
 
-    /// A job of one pixel of sky.
+    /// Returns a job of one pixel of sky.
     fn sky() -> JudgeJob {
         let scene = Scene::from_objects("one", &[vec![[Vec3::ZERO, Vec3::X, Vec3::Y]]]);
         JudgeJob {
@@ -315,9 +315,9 @@ mod tests {
         let too_few = FrameBefore { maps: Vec::new(), eye: DVec3::ZERO, forward: Vec3::Z, factors: Vec::new() };
         let mut judge = BackgroundJudge::new().expect("threads");
         for (job, words) in [
-            (JudgeJob { pixels: vec![None; 2], ..good.clone() }, "1 × 1 pixels has 1, and 2 were given"),
+            (JudgeJob { pixels: vec![None; 2], ..good.clone() }, "1 × 1 needs 1 pixels, not 2"),
             (JudgeJob { before: Some(too_few), ..good.clone() }, "0 factors for 1 pixels"),
-            (JudgeJob { counted: Vec::new(), ..good.clone() }, "0 instances count or do not, and the scene has 1"),
+            (JudgeJob { counted: Vec::new(), ..good.clone() }, "`counted` has 0 elements for 1 instances"),
         ] {
             judge.start(job);
             let error = wait(&mut judge).expect_err(words);
@@ -332,6 +332,6 @@ mod tests {
         let panic = |panic: fn()| catch_unwind(panic).expect_err("it panics");
         assert_eq!(text(&*panic(|| panic!("no such map"))), "no such map");
         assert_eq!(text(&*panic(|| std::panic::panic_any("map 7".to_owned()))), "map 7");
-        assert_eq!(text(&*panic(|| std::panic::panic_any(3))), "without a word");
+        assert_eq!(text(&*panic(|| std::panic::panic_any(3))), "without a message");
     }
 }

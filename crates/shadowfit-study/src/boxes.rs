@@ -1,7 +1,8 @@
-//! What fits know about the scene: boxes around its receivers and its casters.
+//! Input of fits that describes the scene: boxes around its receivers and casters.
 //!
-//! Static instances are divided once into clusters that fit their surface closely, since the box of a level that is one
-//! mesh says little. Instances that an animation moves have one box each, recomputed with every pose.
+//! Static instances are divided once into clusters that fit their surface closely, because a single box
+//! around a level that is one mesh would be useless. An animated instance has one box, recomputed with every
+//! pose.
 
 use glam::{DVec3, Vec3};
 use shadowfit::Clusters;
@@ -9,30 +10,30 @@ use shadowfit::NormalCone;
 use shadowfit::{Aabb, Boxes, FitInput, ViewFrustum};
 use shadowfit_scene::{Casting, Instance, Pose, Scene};
 
-/// From this number of triangles on no clusters are made: at a fifth of a microsecond each that would delay the opening
-/// of a scene by more than a second.
+/// Number of triangles from which on no clusters are made. At a fifth of a microsecond each, they would delay
+/// the opening of a scene by more than a second.
 const MOST_TRIANGLES: usize = 6_000_000;
 
-/// Greatest coordinate of a box that fits take, in metres; a box beyond it is left out.
+/// Greatest coordinate of a box that fits accept, in metres. Boxes beyond it are left out.
 const FARTHEST: f32 = 1e18;
 
-/// Boxes of a scene in its present pose, in world space.
+/// Boxes of a scene in its current pose, in world space.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SceneBoxes {
-    /// Boxes of all receivers: those of the clusters, then one for each instance that moves.
+    /// Boxes of all receivers: the clusters first, then one box for each moving instance.
     receivers: Vec<Aabb>,
-    /// Cones around the normals in them.
+    /// Cones around the normals in the receivers' boxes.
     cones: Vec<NormalCone>,
     /// Boxes of all casters, in the same order.
     casters: Vec<Aabb>,
-    /// Numbers of receivers and of casters that never move.
+    /// Numbers of static receivers and static casters.
     still: [usize; 2],
-    /// Index of each instance with one box for itself, and whether it casts.
+    /// Index of each instance that has a single box, and whether it casts.
     moving: Vec<(usize, bool)>,
 }
 
 impl SceneBoxes {
-    /// Divides static instances into clusters. [`Self::set_pose`] has to follow, for the others.
+    /// Divides static instances into clusters. Call [`Self::set_pose`] afterwards for the other instances.
     pub(crate) fn new(scene: &Scene, pose: &Pose) -> Self {
         let instances = scene.instances();
         let casts: Vec<bool> = instances.iter().map(|instance| casts(scene, instance)).collect();
@@ -51,14 +52,14 @@ impl SceneBoxes {
         Self { receivers, cones, casters, still, moving }
     }
 
-    /// One box for each instance, whether it moves or not. [`Self::set_pose`] has to follow.
+    /// Gives each instance one box, whether it moves or not. Call [`Self::set_pose`] afterwards.
     pub(crate) fn of_instances(scene: &Scene) -> Self {
         let instances = scene.instances();
         let moving = instances.iter().enumerate().map(|(index, instance)| (index, casts(scene, instance))).collect();
         Self { moving, ..Self::default() }
     }
 
-    /// The boxes that a fit gets, for a light that travels in `direction` (world axes).
+    /// Returns a fit's input with these boxes, for a light that travels in `direction` (world axes).
     pub(crate) fn input<'a>(&'a self, views: &'a [ViewFrustum], direction: Vec3) -> FitInput<'a> {
         FitInput {
             receivers: Some(Boxes::world(&self.receivers)),
@@ -68,7 +69,8 @@ impl SceneBoxes {
         }
     }
 
-    /// Updates the boxes of moving instances: `bounds` gives the box of an instance by its index, in world space.
+    /// Updates the boxes of moving instances. `bounds` returns the box of an instance by its index, in world
+    /// space.
     pub(crate) fn set_pose(&mut self, bounds: impl Fn(usize) -> Option<Aabb>) {
         self.receivers.truncate(self.still[0]);
         self.cones.truncate(self.still[0]);
@@ -85,13 +87,13 @@ impl SceneBoxes {
     }
 }
 
-/// Whether some of an instance casts shadows.
+/// Returns whether any part of an instance casts shadows.
 fn casts(scene: &Scene, instance: &Instance) -> bool {
     let primitive = &scene.meshes[instance.mesh].primitives[instance.primitive];
     scene.casting(primitive) != Casting::Nothing
 }
 
-/// Whether some animation moves or deforms each instance.
+/// Returns for each instance whether an animation moves or deforms it.
 fn moving_instances(scene: &Scene, instances: &[Instance]) -> Vec<bool> {
     let mut moves = vec![false; scene.nodes.len()];
     for channel in scene.animations.iter().flat_map(|animation| &animation.channels) {
@@ -99,7 +101,7 @@ fn moving_instances(scene: &Scene, instances: &[Instance]) -> Vec<bool> {
             *moves = true;
         }
     }
-    // Parents stand before their children.
+    // Parents come before their children.
     for node in 0..moves.len() {
         moves[node] |= scene.nodes[node].parent.is_some_and(|parent| moves[parent]);
     }
@@ -110,8 +112,8 @@ fn moving_instances(scene: &Scene, instances: &[Instance]) -> Vec<bool> {
     instances.iter().map(|instance| moves[instance.node] || skin_moves(instance)).collect()
 }
 
-/// Clusters of the static instances, each as an object; `None` where there are too many triangles, or where fits cannot
-/// take some of them.
+/// Divides the static instances into clusters, each as an object. Returns `None` if there are too many
+/// triangles, or if fits cannot take some of them.
 fn clusters(scene: &Scene, pose: &Pose, instances: &[Instance], moves: &[bool]) -> Option<Clusters> {
     let count = |instance: &Instance| scene.meshes[instance.mesh].primitives[instance.primitive].indices.len() / 3;
     if instances.iter().map(count).sum::<usize>() > MOST_TRIANGLES {
@@ -156,7 +158,7 @@ mod tests {
             boxes.set_pose(|index| scene.instance_bounds(&pose, &instances[index]));
             for triangle in pose.triangles(&scene).into_iter().step_by(7) {
                 let [a, b, c] = triangle.vertices;
-                // The rounding of these points may lift them out of a box without thickness.
+                // Rounding may move these points out of a box without thickness.
                 for point in [a, b, c, (a + b) * 0.5, (b + c) * 0.5, (a + b + c) / 3.0] {
                     let slack = Vec3::splat(1e-5);
                     let holds =

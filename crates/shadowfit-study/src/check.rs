@@ -1,8 +1,9 @@
-//! A check of a graphics device, in about a minute: the program's own maps, look-ups, passes and rays, each against the
-//! same on the CPU.
+//! A check of a graphics device that takes about a minute. It compares the program's maps, look-ups, passes
+//! and rays on the device with the same computations on the CPU.
 //!
-//! Each check has a file with its comparison and its tolerance, and draws the built-in courtyard, so that reports of
-//! different devices are comparable. A check that is given a wrong bias, map, view or truth fails: tests prove that.
+//! Each check is a file with its comparison and its tolerance. All checks draw the built-in courtyard, so
+//! that reports of different devices are comparable. Tests prove that a check fails if its bias, map, view or
+//! truth is wrong.
 
 mod bench;
 mod coverage;
@@ -39,7 +40,7 @@ enum Check {
 }
 
 impl Check {
-    /// All of them, in the order in which they run.
+    /// All checks, in the order in which they run.
     const ALL: [Self; 6] = [Self::LookUp, Self::Formats, Self::KeptMaps, Self::Edges, Self::Demand, Self::Coverage];
 
     const fn row(self) -> [&'static str; 3] {
@@ -65,7 +66,8 @@ impl Check {
     }
 }
 
-/// The report of a device before its check: all checks wait. It has no facts before the device is there.
+/// Returns the report of a device before its check, with all checks pending. Without a device it has no
+/// facts.
 pub fn unchecked(gpu: Option<&Gpu>) -> CheckReport {
     let row = |check: Check| {
         let [name, about, tolerance] = check.row();
@@ -74,16 +76,17 @@ pub fn unchecked(gpu: Option<&Gpu>) -> CheckReport {
     CheckReport { facts: gpu.map_or_else(Vec::new, facts::facts), rows: Check::ALL.map(row).to_vec() }
 }
 
-/// Checks a device and returns the report. `progress` is called whenever a check begins or ends. The check ends early once
-/// `is_cancelled` is set, which is looked at several times a second. The device should be used for nothing else meanwhile:
-/// its faults are taken as those of the check.
+/// Checks a device and returns the report. Calls `progress` whenever a check begins or ends. The check ends
+/// early once `is_cancelled` is set, which is read several times per second. Do not use the device for other
+/// work meanwhile, because its faults are attributed to the check.
 ///
-/// A device that is lost ends the check: the row that found it has failed, and the rest are reported as not run.
+/// If the device is lost, the check ends: the current row has failed, and the remaining rows are reported as
+/// not run.
 pub fn check_device(gpu: &Gpu, is_cancelled: &AtomicBool, progress: &mut dyn FnMut(&CheckReport)) -> CheckReport {
     pollster::block_on(check_device_async(gpu, is_cancelled, progress))
 }
 
-/// The same, and lets a browser do other things while the GPU draws.
+/// Checks a device like [`check_device`]. A browser can do other work while the GPU draws.
 pub async fn check_device_async(
     gpu: &Gpu,
     is_cancelled: &AtomicBool,
@@ -109,7 +112,7 @@ pub async fn check_device_async(
     report
 }
 
-/// Notes how a check ended. An error is the reason for which no other check runs.
+/// Records how a check ended. If no other check can run, returns the reason as an error.
 fn note(row: &mut CheckRow, ended: Ended) -> Result<(), String> {
     (row.state, row.found) = match ended {
         Ended::Outcome(Outcome::Passed(found)) => (CheckState::Passed, found),
@@ -122,21 +125,21 @@ fn note(row: &mut CheckRow, ended: Ended) -> Result<(), String> {
         Ended::Error(error) => (CheckState::Failed, format!("{error:#}")),
         Ended::Lost(reason) => {
             (row.state, row.found) = (CheckState::Failed, format!("the device was lost during this check: {reason}"));
-            return Err("the device was lost before".to_owned());
+            return Err("the device was lost earlier".to_owned());
         }
     };
     Ok(())
 }
 
-/// How a check ended.
+/// End of a check.
 enum Ended {
     Outcome(Outcome),
     Error(Error),
-    /// The device was lost, in its own words.
+    /// The device was lost, with the reason that it reported.
     Lost(String),
 }
 
-/// Runs a check, and looks for what became of the device.
+/// Runs a check, and finds out whether the device was lost or faulty.
 #[cfg_attr(not(target_family = "wasm"), expect(clippy::unused_async, reason = "only browsers wait"))]
 async fn run<'a>(gpu: &'a Gpu, is_cancelled: &'a AtomicBool, bench: &mut Option<Bench<'a>>, check: Check) -> Ended {
     let work = async {
@@ -147,7 +150,7 @@ async fn run<'a>(gpu: &'a Gpu, is_cancelled: &'a AtomicBool, bench: &mut Option<
         bench.pause().await?;
         check.run(bench).await
     };
-    // wgpu panics where a lost device is polled. Only browsers wait in a future, and none of them can catch a panic.
+    // wgpu panics if a lost device is polled. Only browsers wait in a future, and they cannot catch a panic.
     #[cfg(not(target_family = "wasm"))]
     let ended = gpu.unless_lost(|| pollster::block_on(work));
     #[cfg(target_family = "wasm")]
@@ -166,7 +169,7 @@ async fn run<'a>(gpu: &'a Gpu, is_cancelled: &'a AtomicBool, bench: &mut Option<
 mod tests {
     use super::*;
 
-    /// A device that a test may lose.
+    /// Opens a separate device, because the test may lose it.
     fn own_gpu() -> Gpu {
         shadowfit_testing::open_renderer_gpu()
     }

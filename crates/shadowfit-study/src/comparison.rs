@@ -1,4 +1,4 @@
-//! Techniques side by side in one scene, frame by frame.
+//! Side-by-side comparison of techniques in one scene, frame by frame.
 
 use anyhow::{Context, Result, ensure};
 use shadowfit::FittedMap;
@@ -9,7 +9,7 @@ use shadowfit_wgpu::ShadowMapDescriptor;
 
 use crate::{Evaluator, Judging, NamedTechnique, PreparedScene, SharedTruth, View};
 
-/// Samples per pixel of pictures that are compared.
+/// Samples per pixel of the compared pictures.
 const SAMPLES: u32 = 1;
 
 /// One technique in a comparison.
@@ -22,7 +22,7 @@ struct Entry {
 /// Techniques that are compared in a scene.
 #[derive(Debug)]
 pub struct Comparison {
-    /// How pictures of the techniques that are added from now on are judged.
+    /// Settings for judging the pictures of techniques that are added from now on.
     pub judging: Judging,
     gpu: Gpu,
     scene: PreparedScene,
@@ -32,18 +32,18 @@ pub struct Comparison {
 /// The maps and the picture of a technique for a frame.
 #[derive(Debug)]
 pub struct Outcome {
-    /// Its maps.
+    /// Maps of the technique.
     pub maps: Vec<FittedMap>,
-    /// Its picture, judged.
+    /// The judged picture.
     pub judged: Judged,
 }
 
 impl Comparison {
-    /// A comparison without techniques.
+    /// Creates a comparison without techniques.
     ///
     /// # Errors
     ///
-    /// When the scene has nothing to draw.
+    /// If the scene has nothing to draw.
     pub fn new(gpu: Gpu, scene: Scene, judging: Judging) -> Result<Self> {
         // Renderers of all shadow maps share one layout.
         let renderer = Renderer::new(&gpu, &ShadowMapDescriptor::default(), SAMPLES)?;
@@ -55,7 +55,7 @@ impl Comparison {
     ///
     /// # Errors
     ///
-    /// When its shadow map cannot be made on this GPU.
+    /// If its shadow map cannot be created on this GPU.
     pub fn add(&mut self, technique: impl Into<NamedTechnique>) -> Result<()> {
         let named = technique.into();
         let renderer = Renderer::new(&self.gpu, &ShadowMapDescriptor::from(&named.technique), SAMPLES)
@@ -71,17 +71,17 @@ impl Comparison {
         self.entries.clear();
     }
 
-    /// The scene.
+    /// Returns the scene.
     pub fn scene(&self) -> &PreparedScene {
         &self.scene
     }
 
-    /// The GPU that draws.
+    /// Returns the GPU that draws.
     pub fn gpu(&self) -> &Gpu {
         &self.gpu
     }
 
-    /// The techniques, in the order in which they were added.
+    /// Returns the techniques, in the order in which they were added.
     pub fn techniques(&self) -> impl Iterator<Item = &NamedTechnique> {
         self.entries.iter().map(|entry| &entry.named)
     }
@@ -91,17 +91,17 @@ impl Comparison {
         self.scene.set_time(&self.gpu, animation, seconds);
     }
 
-    /// Fits, draws and judges a frame with every technique, in the order in which they were added. The truth is traced
-    /// unless that of the same frame is there already.
+    /// Fits, draws and judges a frame with every technique, in the order in which they were added. The truth
+    /// is traced unless `truth` already has it for this frame.
     ///
     /// # Errors
     ///
-    /// When the camera makes no sense or the device was lost.
+    /// If the camera is invalid or the device was lost.
     pub fn frame(&mut self, view: &View, truth: &mut SharedTruth) -> Result<Vec<Outcome>> {
         pollster::block_on(self.frame_async(view, truth))
     }
 
-    /// The same, and lets a browser do other things while the GPU draws.
+    /// Runs like [`Self::frame`]. A browser can do other work while the GPU draws.
     ///
     /// # Errors
     ///
@@ -117,13 +117,13 @@ impl Comparison {
         Ok(outcomes)
     }
 
-    /// A technique's evaluator and the scene, to judge frames live.
+    /// Returns a technique's evaluator and the scene, to judge frames live.
     pub fn evaluator(&mut self, technique: usize) -> (&Gpu, &mut Evaluator, &mut PreparedScene) {
         (&self.gpu, &mut self.entries[technique].evaluator, &mut self.scene)
     }
 
-    /// The shaded picture of a frame by a technique, with maps that [`Self::frame`] gave: sRGB pixels, four bytes each,
-    /// rows from the top; and the picture judged again.
+    /// Draws the shaded picture of a frame with a technique and with maps from [`Self::frame`]. Returns sRGB
+    /// pixels, four bytes each, rows from the top, and the picture judged again.
     ///
     /// # Errors
     ///
@@ -142,16 +142,16 @@ impl Comparison {
     }
 }
 
-/// Refuses sums without judged pixels: all shares of wrong pixels would be 0.
+/// Returns an error for sums without judged pixels, because all shares of wrong pixels would be 0.
 ///
 /// # Errors
 ///
-/// When there is no frame, or no pixel of the frames faces the light.
+/// If there is no frame, or no pixel of the frames faces the light.
 pub fn ensure_judged(tally: &PictureTally) -> Result<()> {
-    ensure!(tally.frames > 0, "nothing was judged: there is no frame");
+    ensure!(tally.frames > 0, "nothing was judged: there are no frames");
     ensure!(
         tally.all.facing > 0,
-        "nothing was judged: in none of the {} frames a pixel faces the light; choose another path or light",
+        "nothing was judged: no pixel faces the light in any of the {} frames; choose another path or light",
         tally.frames
     );
     Ok(())

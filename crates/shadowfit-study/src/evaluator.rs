@@ -9,25 +9,26 @@ use shadowfit_render::{
     Atmosphere, Frame, Gpu, PixelQuery, PixelRead, ProbePixel, ProbeTargets, RayError, RenderTarget, Renderer,
     Statistics,
 };
-use shadowfit_truth::Judged;
 use shadowfit_truth::gpu::{GpuBefore, GpuPixel};
+use shadowfit_truth::{FlipReference, Judged, Truth, TruthPoint};
 use shadowfit_wgpu::ShadowMapError;
 use shadowfit_wgpu::exact_edges::EdgeOutcome;
+use wgpu::util::DeviceExt;
 
 use crate::live::{LiveInput, LiveTruth};
 use crate::maps::{measured, picture_maps};
 use crate::picture::{FrameBefore, factors};
 use crate::{JudgeJob, Judging, PreparedScene, SceneRays, SharedTruth, View};
 
-/// Draws a technique's maps and the scene shadowed by them, and judges the picture.
+/// Draws a technique's maps and the scene with their shadows, and judges the picture.
 #[derive(Debug)]
 pub struct Evaluator {
-    /// Draws the maps into its shadow map, and the pictures.
+    /// Renderer of the maps and the pictures.
     pub renderer: Renderer,
-    /// How pictures are judged.
+    /// Settings for judging pictures.
     pub judging: Judging,
     targets: Option<ProbeTargets>,
-    /// Targets of the probe of the frame before.
+    /// Targets of the previous frame's probe.
     targets_before: Option<ProbeTargets>,
     picture: Option<RenderTarget>,
     before: Option<Before>,
@@ -35,7 +36,7 @@ pub struct Evaluator {
     drawn: Vec<FittedMap>,
 }
 
-/// The maps of the frame before, and the eye and forward direction that chose among them.
+/// The maps of the previous frame, and the eye and view direction for selecting among them.
 #[derive(Debug)]
 struct Before {
     maps: Vec<FittedMap>,
@@ -48,12 +49,12 @@ struct Before {
 struct Probed<'a> {
     view: &'a View,
     maps: &'a [FittedMap],
-    /// The eye and the forward direction that choose among the maps, if they are not the camera's.
+    /// The eye and the view direction for selecting among the maps, if they differ from the camera's.
     choice: Option<(DVec3, Vec3)>,
 }
 
 impl Evaluator {
-    /// An evaluator that has judged nothing yet.
+    /// Creates an evaluator that has judged no picture yet.
     pub fn new(renderer: Renderer, judging: Judging) -> Self {
         Self { renderer, judging, targets: None, targets_before: None, picture: None, before: None, drawn: Vec::new() }
     }
@@ -68,7 +69,7 @@ impl Evaluator {
     ///
     /// # Errors
     ///
-    /// When a map does not suit the shadow map; nothing is drawn then.
+    /// If a map does not match the shadow map. Nothing is drawn then.
     pub fn draw(
         &mut self,
         gpu: &Gpu,
@@ -76,7 +77,7 @@ impl Evaluator {
         frame: &Frame<'_>,
         picture: &RenderTarget,
     ) -> Result<Statistics, ShadowMapError> {
-        // Without rays edges are filtered, and the renderer says so.
+        // Without rays edges are filtered, and the renderer reports it.
         let _rays = self.make_rays(gpu, scene);
         let frame = &Frame { ray_offset: self.judging.ray_offset as f32, ..*frame };
         let drawn = self.renderer.draw(gpu, &mut scene.gpu_scene, frame, picture)?;
@@ -85,17 +86,17 @@ impl Evaluator {
         Ok(drawn)
     }
 
-    /// Makes a scene ready for rays, where edges are traced.
+    /// Prepares a scene for rays, if the technique traces edges.
     fn make_rays(&self, gpu: &Gpu, scene: &mut PreparedScene) -> Result<(), RayError> {
         if self.renderer.shadow_map().descriptor().edges.are_traced() { scene.make_gpu_rays(gpu) } else { Ok(()) }
     }
 
-    /// Begins to read triangle and shadow factor of a pixel of a view, and the depths around a texel of a map, without
-    /// waiting. The view must be the one that was drawn last, since its maps are read.
+    /// Starts to read triangle and shadow factor of a pixel of a view, and the depths around a texel of a
+    /// map. Does not wait. The view must be the one that was drawn last, because its maps are read.
     ///
     /// # Errors
     ///
-    /// When the camera has no direction.
+    /// If the camera has no direction.
     pub fn read_pixel(
         &mut self,
         gpu: &Gpu,
@@ -108,12 +109,13 @@ impl Evaluator {
         Ok(self.renderer.probe_pixel(gpu, &mut scene.gpu_scene, &frame, query)?)
     }
 
-    /// The maps that were drawn last.
+    /// Returns the maps that were drawn last.
     pub fn drawn_fits(&self) -> &[FittedMap] {
         &self.drawn
     }
 
-    /// The shaded picture of a view, in the size that is judged: sRGB pixels, four bytes each, rows from the top.
+    /// Draws the shaded picture of a view, in the judged size: sRGB pixels, four bytes each, rows from the
+    /// top.
     ///
     /// # Errors
     ///
@@ -125,20 +127,45 @@ impl Evaluator {
         view: &View,
         maps: &[FittedMap],
     ) -> Result<Vec<u8>> {
+        let atmosphere = view.atmosphere();
+        self.read_picture(gpu, scene, &view.frame(maps, &atmosphere))
+    }
+
+    fn read_picture(&mut self, gpu: &Gpu, scene: &mut PreparedScene, frame: &Frame<'_>) -> Result<Vec<u8>> {
         let kept = self.picture.take().filter(|picture| picture.size == self.judging.size);
         let picture = kept.unwrap_or_else(|| self.renderer.target(gpu, self.judging.size));
-        let atmosphere = view.atmosphere();
-        self.draw(gpu, scene, &view.frame(maps, &atmosphere), &picture)?;
+        self.draw(gpu, scene, frame, &picture)?;
         let pixels = picture.read(gpu);
         self.picture = Some(picture);
         Ok(pixels?)
     }
 
-    /// Draws the maps of a view and judges the shadows that they give.
+    /// Returns the mean ꟻLIP error of the shaded picture of a view against the same picture with true shadows, which is
+    /// drawn once for all techniques of a frame. Surfaces that face away from the light have no light in it.
+    fn flip(
+        &mut self,
+        gpu: &Gpu,
+        scene: &mut PreparedScene,
+        view: &View,
+        maps: &[FittedMap],
+        truth: &mut SharedTruth,
+    ) -> Result<f64> {
+        let mapped = self.picture(gpu, scene, view, maps)?;
+        if let (None, Some(traced)) = (&truth.picture, truth.get()) {
+            let factors = factors_texture(gpu, traced);
+            let atmosphere = view.atmosphere();
+            let frame = Frame { factors: Some(&factors), ..view.frame(maps, &atmosphere) };
+            let picture = self.read_picture(gpu, scene, &frame)?;
+            truth.picture = Some(FlipReference::new(&picture, self.judging.size));
+        }
+        Ok(truth.picture.as_ref().map_or(0.0, |reference| reference.mean_error(&mapped)))
+    }
+
+    /// Draws the maps of a view and judges their shadows.
     ///
     /// # Errors
     ///
-    /// When a map does not suit the shadow map, or the device was lost.
+    /// If a map does not match the shadow map, or the device was lost.
     pub fn judge(
         &mut self,
         gpu: &Gpu,
@@ -150,7 +177,7 @@ impl Evaluator {
         pollster::block_on(self.judge_async(gpu, scene, view, maps, truth))
     }
 
-    /// The same, and lets a browser do other things while the GPU draws.
+    /// Judges like [`Self::judge`]. A browser can do other work while the GPU draws.
     ///
     /// # Errors
     ///
@@ -164,15 +191,24 @@ impl Evaluator {
         truth: &mut SharedTruth,
     ) -> Result<Judged> {
         let rays = scene.shared_rays();
-        let (job, seen) = self.job(gpu, scene, view, maps, rays).await?;
+        let (mut job, seen) = self.seen_job(gpu, scene, view, maps, rays).await?;
         self.targets = Some(seen);
-        Ok(job.judge_by(truth.or_trace(|| job.trace())))
+        truth.or_trace(|| job.trace());
+        // The shadow map still holds this frame's maps here. Crawl draws the previous frame's.
+        let flip = if self.judging.flip { Some(self.flip(gpu, scene, view, maps, truth)?) } else { None };
+        job.before = self.frame_before(gpu, scene, view).await?;
+        self.note_view(view, maps);
+        let mut judged = job.judge_by(truth.or_trace(|| job.trace()));
+        if let Some(mean) = flip {
+            judged.tally.add_flip(mean);
+        }
+        Ok(judged)
     }
 
-    /// Makes the job of a view for a [`BackgroundJudge`](crate::BackgroundJudge): draws its maps and its probe, and
-    /// waits for them. As for [`Self::judge`], crawl is measured against the view before. Also returns the probe, whose
-    /// [depth buffer](ProbeTargets::depth_view) tells a later frame which surfaces the picture shows
-    /// ([`JudgedPicture::depth`](shadowfit_render::JudgedPicture::depth)).
+    /// Creates the job of a view for a [`BackgroundJudge`](crate::BackgroundJudge): draws its maps and its
+    /// probe, and waits for them. As for [`Self::judge`], crawl is measured against the previous view. Also
+    /// returns the probe, whose [depth buffer](ProbeTargets::depth_view) shows a later frame which surfaces
+    /// are visible ([`JudgedPicture::depth`](shadowfit_render::JudgedPicture::depth)).
     ///
     /// # Errors
     ///
@@ -196,6 +232,21 @@ impl Evaluator {
         maps: &[FittedMap],
         rays: Arc<SceneRays>,
     ) -> Result<(JudgeJob, ProbeTargets)> {
+        let (mut job, seen) = self.seen_job(gpu, scene, view, maps, rays).await?;
+        job.before = self.frame_before(gpu, scene, view).await?;
+        self.note_view(view, maps);
+        Ok((job, seen))
+    }
+
+    /// Creates the job of a view without the previous frame.
+    async fn seen_job(
+        &mut self,
+        gpu: &Gpu,
+        scene: &mut PreparedScene,
+        view: &View,
+        maps: &[FittedMap],
+        rays: Arc<SceneRays>,
+    ) -> Result<(JudgeJob, ProbeTargets)> {
         if view.is_first {
             self.before = None;
         }
@@ -203,8 +254,6 @@ impl Evaluator {
         let pixels = seen.arrive(gpu).await?.pixels;
         let traced = self.renderer.edge_result() == EdgeOutcome::Traced;
         let traced = self.renderer.take_edge_counts().filter(|_| traced);
-        let before = self.frame_before(gpu, scene, view).await?;
-        self.note_view(view, maps);
         let job = JudgeJob {
             rays,
             pixels,
@@ -213,13 +262,14 @@ impl Evaluator {
             maps: maps.to_vec(),
             descriptor: *self.renderer.shadow_map().descriptor(),
             counted: scene.counted_instances(self.judging.subject_only),
-            before,
+            before: None,
             traced,
         };
         Ok((job, seen))
     }
 
-    /// The maps of the view before, and their shadow factors at the points of this one, if crawl is measured.
+    /// Returns the maps of the previous view, and their shadow factors at the points of this one, if crawl is
+    /// measured.
     async fn frame_before(&mut self, gpu: &Gpu, scene: &mut PreparedScene, view: &View) -> Result<Option<FrameBefore>> {
         let Some(Before { maps, eye, forward }) = self.before.take().filter(|_| self.judging.crawl) else {
             return Ok(None);
@@ -229,11 +279,11 @@ impl Evaluator {
         Ok(Some(FrameBefore { maps, eye, forward, factors }))
     }
 
-    /// Draws a view and judges it on the GPU. All pixels count there, whatever [`Judging::subject_only`] says.
+    /// Draws a view and judges it on the GPU. All pixels count, regardless of [`Judging::subject_only`].
     ///
     /// # Errors
     ///
-    /// As for [`Self::judge`], and when the sun has a radius.
+    /// As for [`Self::judge`], and if the sun has a radius.
     pub fn judge_live(
         &mut self,
         gpu: &Gpu,
@@ -245,7 +295,7 @@ impl Evaluator {
         self.with_live_input(gpu, scene, view, maps, None, |input| live.judge(gpu, input))
     }
 
-    /// Mean time of judging a view on the GPU, without drawing it, in milliseconds.
+    /// Returns the mean time of judging a view on the GPU, without drawing it, in milliseconds.
     ///
     /// # Errors
     ///
@@ -262,10 +312,10 @@ impl Evaluator {
         self.with_live_input(gpu, scene, view, maps, None, |input| live.time(gpu, input, repeats))
     }
 
-    /// Draws a view's maps and its probe, and records the passes that judge it on the GPU, without waiting:
-    /// [`LiveTruth::classes`] is the picture of classes, and [`LiveTruth::take`] has its sums some frames later. The
-    /// maps are left as a picture of the same view needs them. Crawl is measured against the view before, if
-    /// [`Judging::crawl`] says so.
+    /// Draws a view's maps and its probe, and records the passes that judge it on the GPU, without waiting.
+    /// [`LiveTruth::classes`] is the picture of classes. [`LiveTruth::take`] returns its sums some frames
+    /// later. A picture of the same view can reuse the maps. If [`Judging::crawl`] is set, crawl is measured
+    /// against the previous view.
     ///
     /// # Errors
     ///
@@ -284,24 +334,26 @@ impl Evaluator {
         Ok(())
     }
 
-    /// The probe of the view that was judged last, whose depth buffer tells which surfaces it shows. The next one gets
-    /// targets of its own.
+    /// Takes the probe of the view that was judged last, whose depth buffer shows its visible surfaces. The
+    /// next probe gets new targets.
     pub fn take_probe(&mut self) -> Option<ProbeTargets> {
         self.targets.take()
     }
 
-    /// Notes a view as the one before: crawl is measured against it. Views that are judged are noted without this call.
+    /// Records a view as the previous one, to measure crawl against it. Judged views are recorded without
+    /// this call.
     pub fn note_view(&mut self, view: &View, maps: &[FittedMap]) {
         let forward = view.camera.forward.normalize();
         self.before = Some(Before { maps: maps.to_vec(), eye: view.camera.eye, forward });
     }
 
-    /// Forgets the view before: the next one begins a path, and its crawl is not measured.
+    /// Forgets the previous view. The next view starts a path, and its crawl is not measured.
     pub fn forget_view(&mut self) {
         self.before = None;
     }
 
-    /// Draws the probe of a view, and that of the maps of the frame before where there is one, and judges them.
+    /// Draws the probe of a view, and the probe of the previous frame's maps if there is one, and judges
+    /// them.
     fn with_live_input<T>(
         &mut self,
         gpu: &Gpu,
@@ -342,7 +394,7 @@ impl Evaluator {
         judged
     }
 
-    /// Triangle and shadow factor of each pixel.
+    /// Returns triangle and shadow factor of each pixel.
     async fn probe(
         &mut self,
         gpu: &Gpu,
@@ -355,13 +407,13 @@ impl Evaluator {
         Ok(probe?.pixels)
     }
 
-    /// Draws a probe into targets that the caller gives back.
+    /// Draws a probe into targets that the caller must put back.
     fn draw_probe(&mut self, gpu: &Gpu, scene: &mut PreparedScene, probed: &Probed<'_>) -> Result<ProbeTargets> {
         let kept = self.targets.take();
         self.draw_probe_into(gpu, scene, probed, kept)
     }
 
-    /// The same into these targets where they have the right size, otherwise into new ones.
+    /// Draws a probe into these targets if they have the right size, otherwise into new ones.
     fn draw_probe_into(
         &mut self,
         gpu: &Gpu,
@@ -378,4 +430,24 @@ impl Evaluator {
         self.renderer.draw_probe(gpu, &mut scene.gpu_scene, &frame, &targets)?;
         Ok(targets)
     }
+}
+
+/// Uploads a picture's true factors. Surfaces that face away from the light have factor 0.
+fn factors_texture(gpu: &Gpu, truth: &Truth) -> wgpu::TextureView {
+    let factor = |point: &Option<TruthPoint>| point.map_or(-1.0, |point: TruthPoint| point.lit);
+    let factors: Vec<u8> = truth.points.iter().flat_map(|point| factor(point).to_le_bytes()).collect();
+    let [width, height] = truth.camera.size;
+    let descriptor = wgpu::TextureDescriptor {
+        label: Some("true shadow factors"),
+        size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::R32Float,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    };
+    let order = wgpu::util::TextureDataOrder::LayerMajor;
+    let texture = gpu.device.create_texture_with_data(&gpu.queue, &descriptor, order, &factors);
+    texture.create_view(&wgpu::TextureViewDescriptor::default())
 }

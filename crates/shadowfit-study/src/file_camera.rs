@@ -1,24 +1,27 @@
-//! A camera of a scene's file as a view takes it: with planes that suit the scene where the file leaves them open.
+//! A camera of a scene's file as a view, with near and far planes for the scene if the file does not set
+//! them.
 
 use shadowfit::{Aabb, Camera, Lens};
 use shadowfit_scene::{Lens as FileLens, Pose, Scene, SceneCamera};
 
-/// Far distance of a camera without a far plane, in half diagonals of the scene's bounds, at least.
+/// Smallest far distance of a camera without a far plane, in half diagonals of the scene's bounds.
 const FAR: f32 = 20.0;
-/// Room behind the scene that such a camera sees, as a multiple of the distance to its far side. It also covers parts that
-/// turn, and poses between two samples of an animation.
+/// Room behind the scene within such a camera's far plane, as a multiple of the distance to the scene's far
+/// side. It also covers parts that turn, and poses between two samples of an animation.
 const ROOM_BEHIND: f32 = 1.25;
-/// Number of poses that an animation is measured in.
+/// Number of sampled poses per animation.
 const SAMPLES: usize = 17;
-/// Number of nodes that these poses may place in all. Later animations do not count.
+/// Greatest number of nodes in all sampled poses. Later animations are skipped.
 const MOST_NODES: usize = 4_000_000;
-/// Least near distance of an orthographic camera, as a share of its far distance. Such a camera is moved back by the distance
-/// that it lacks, which changes no pixel: several maps divide the logarithm of the depth.
+/// Smallest near distance of an orthographic camera, as a share of its far distance, because several maps
+/// divide the logarithm of the depth. A camera with less is moved back by the missing distance, which changes
+/// no pixel.
 const LEAST_NEAR: f32 = 1e-3;
 
-/// Returns the far distance, in metres, with which each of a scene's cameras sees past the whole scene in its rest pose and
-/// throughout its animations. One distance for all poses keeps splits and depths steady. `bounds` are the scene's world
-/// bounds in its rest pose. Parts that move widen the bounds by the way that their nodes go. Morph targets do not.
+/// Returns the far distance, in metres, at which each of a scene's cameras sees past the whole scene in its
+/// rest pose and throughout its animations. One distance for all poses keeps splits and depths steady.
+/// `bounds` are the scene's world bounds in its rest pose. They are widened by the motion of the nodes, but
+/// not by morph targets.
 pub fn camera_reaches(scene: &Scene, bounds: &Aabb) -> Vec<f32> {
     let radius = (bounds.max - bounds.min).length() * 0.5;
     let middle = ((bounds.min + bounds.max) * 0.5).as_dvec3();
@@ -42,7 +45,7 @@ pub fn camera_reaches(scene: &Scene, bounds: &Aabb) -> Vec<f32> {
         // A file may have any number of animations.
         let poses = (MOST_NODES / scene.nodes.len().max(1)).max(SAMPLES);
         for (index, animation) in scene.animations.iter().enumerate().take(poses / SAMPLES) {
-            // The end itself is the start of the next turn.
+            // The end itself is the start of the next cycle.
             let (step, last) = (animation.duration / (SAMPLES - 1) as f32, animation.duration.next_down());
             (0..SAMPLES).for_each(|sample| widen(&scene.pose(Some(index), (sample as f32 * step).min(last))));
         }
@@ -50,7 +53,7 @@ pub fn camera_reaches(scene: &Scene, bounds: &Aabb) -> Vec<f32> {
     reaches
 }
 
-/// Returns the near distance of a perspective lens that suits a scene's bounds, in metres.
+/// Returns the near distance of a perspective lens for a scene with these bounds, in metres.
 pub fn near_of(bounds: &Aabb) -> f32 {
     // A scene of one point has no size.
     let radius = (bounds.max - bounds.min).length() * 0.5;
@@ -67,7 +70,8 @@ pub fn file_camera(camera: &SceneCamera, pose: &Pose, reach: f32, aspect: f32) -
             (Lens::Perspective { fov_y }, near, far.unwrap_or_else(|| reach.max(near * 2.0)), 0.0)
         }
         FileLens::Orthographic { half_height, near, far } => {
-            // Depths are spread evenly, so that a plane far behind the scene would leave it few of them.
+            // Depths are spread evenly, so a plane far behind the scene would leave few depth steps for the
+            // scene.
             let far = far.min(reach.max(near * 2.0));
             let back = ((LEAST_NEAR * far - near) / (1.0 - LEAST_NEAR)).max(0.0);
             (Lens::Orthographic { half_height }, near + back, far + back, back)

@@ -1,4 +1,4 @@
-//! Fits of a scene's views by the fitter that engines take, with rays that find the visible points.
+//! Fits of a scene's views by the public fitter, with rays that find the visible points.
 
 use glam::{DVec3, Vec3};
 use shadowfit::demand;
@@ -15,31 +15,32 @@ const COLUMNS: u32 = 64;
 /// Rays down the picture.
 const ROWS: u32 = 36;
 
-/// Which rays may find the visible points of a view.
+/// Rays that may be used to find the visible points of a view.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum RayUse {
-    /// Those of the scene's present pose. They are made where they do not exist.
+    /// Rays for the current pose. Builds them if missing.
     #[default]
     Wait,
-    /// Those of an earlier pose, too, where those of the present one do not exist. Rays are made only where there are
-    /// none at all. That costs sharpness, never coverage.
+    /// Rays for the current pose, or for an earlier pose if these are missing. Builds rays only if there are
+    /// none. Earlier rays cost sharpness, never coverage.
     Late,
-    /// Only rays that exist, of any pose: this never makes any. Without rays, fits take the scene's boxes.
+    /// Only existing rays, for any pose. Never builds any. Without rays, fits use the scene's boxes.
     IfReady,
 }
 
 impl PosedScene {
-    /// The input of fits in this scene, for views and a light that travels in `direction` (world axes).
+    /// Returns the input of fits in this scene, for views and a light that travels in `direction` (world
+    /// axes).
     pub fn input<'a>(&'a self, inputs: Inputs, views: &'a [ViewFrustum], direction: Vec3) -> FitInput<'a> {
         self.boxes(inputs.boxes).input(views, direction)
     }
 
-    /// Fits the next view of a path, then gives the visible points of that view to the fitter. Where a path begins, the
-    /// fitter forgets earlier views.
+    /// Fits the next view of a path, then passes the visible points of that view to the fitter. At the start
+    /// of a path, the fitter forgets earlier views.
     ///
     /// # Errors
     ///
-    /// When the camera or the technique makes no sense.
+    /// If the camera or the technique is invalid.
     pub fn fit_next(&self, fitter: &mut ShadowFitter, inputs: Inputs, view: &View) -> Result<FittedMaps, FitError> {
         if view.is_first {
             fitter.reset();
@@ -49,12 +50,12 @@ impl PosedScene {
         Ok(maps)
     }
 
-    /// Fits a single view, as a running program does after it has drawn that view once: nothing is held from other
-    /// views, and the fitter knows the visible points of this one.
+    /// Fits a single view, like a running program after it has drawn that view once: nothing is held from
+    /// other views, and the fitter knows the visible points of this view.
     ///
     /// # Errors
     ///
-    /// As [`Self::fit_next`].
+    /// As for [`Self::fit_next`].
     pub fn fit_alone(&self, fitter: &mut ShadowFitter, inputs: Inputs, view: &View) -> Result<FittedMaps, FitError> {
         fitter.reset();
         self.see(fitter, inputs, view, RayUse::Wait)?;
@@ -65,12 +66,12 @@ impl PosedScene {
         fitter.fit(&self.input(inputs, &[view.camera.frustum()?], view.direction)).copied()
     }
 
-    /// Gives the visible points of a view, found by rays, to a fitter, if the inputs say so, its technique uses them,
-    /// there are rays, and the view begins before shadows end.
+    /// Passes the visible points of a view, found by rays, to a fitter. Does nothing if the inputs or the
+    /// technique do not use them, there are no rays, or the view begins beyond the shadow distance.
     ///
     /// # Errors
     ///
-    /// When the camera makes no sense.
+    /// If the camera is invalid.
     pub fn see(&self, fitter: &mut ShadowFitter, inputs: Inputs, view: &View, rays: RayUse) -> Result<(), FitError> {
         let is_shadowed = view.camera.frustum()?.begins_before(fitter.technique().fit.max_distance);
         if !inputs.tell(fitter.technique()) || !is_shadowed {
@@ -89,12 +90,12 @@ impl PosedScene {
     }
 }
 
-/// Counts the visible points that face the light, by rays against the triangles. Camera and triangles are relative to
-/// the same position; `direction` is the light's direction of travel in world axes.
+/// Counts the visible points that face the light, by rays against the triangles. Camera and triangles are
+/// relative to the same position. `direction` is the light's direction of travel in world axes.
 ///
 /// # Errors
 ///
-/// As [`VisibleDemandSpace::new`].
+/// As for [`VisibleDemandSpace::new`].
 pub fn see_by_rays(
     tracer: &Tracer,
     camera: impl Into<Camera>,
@@ -115,14 +116,14 @@ pub fn see_by_rays(
             let x = (2.0 * (f64::from(column) + 0.5) / f64::from(COLUMNS) - 1.0) * half.x;
             let y = (1.0 - 2.0 * (f64::from(row) + 0.5) / f64::from(ROWS)) * half.y;
             let aside: DVec3 = right * x + up * y;
-            // Lines of sight meet in the eye, or are parallel.
+            // Lines of sight start at the eye, or are parallel.
             let (from, ray) = if is_orthographic { (aside, -back) } else { (DVec3::ZERO, aside - back) };
             let Some(hit) = tracer.first_hit((camera.eye + from).as_vec3(), ray.as_vec3()) else { continue };
             let normal = tracer.normal(hit.triangle).as_dvec3();
             let normal = if normal.dot(ray) > 0.0 { -normal } else { normal };
             let depth = f64::from(hit.distance);
-            // How far the point moves on its surface when the line of sight moves by one metre: at a depth of one metre
-            // for a perspective.
+            // Returns how far the point moves on its surface when the line of sight moves by one metre; for a
+            // perspective, at a depth of one metre.
             let slide = |across: DVec3| across - ray * (across.dot(normal) / ray.dot(normal));
             let [right, down] = [slide(right), slide(-up)];
             if normal.dot(direction.as_dvec3()) < 0.0 {
@@ -172,7 +173,7 @@ mod tests {
         View { camera: camera.into(), direction: Vec3::new(0.4, -0.7, 0.3).normalize(), is_first }
     }
 
-    /// A fitter of a technique by name, and what its fits are given.
+    /// Returns a fitter of a technique by name, and the inputs of its fits.
     fn fitter(name: &str) -> (ShadowFitter, Inputs) {
         let named = NamedTechnique::preset(name).expect("a preset");
         (ShadowFitter::new(&named.technique), named.inputs)

@@ -1,4 +1,4 @@
-//! The frame of a view, and the haze that suits what is seen in it.
+//! The frame of a view, and a haze that fits the distance of view.
 
 use shadowfit::FittedMap;
 use shadowfit_params::tool::CameraSettings;
@@ -6,8 +6,9 @@ use shadowfit_render::{Atmosphere, Frame};
 
 use crate::View;
 
-/// Sun and sky with a haze that suits the size of what is seen, so that a chair is not lost in it and a town has some: it
-/// is as dense at a distance of `sight` metres as the default haze at the default camera's far plane.
+/// Returns sun and sky with a haze for the size of the visible scene, so that it does not hide a chair but is
+/// visible in a town. At `sight` metres, it is as dense as the default haze at the default camera's far
+/// plane.
 pub fn atmosphere(sight: f32) -> Atmosphere {
     let atmosphere = Atmosphere::default();
     let usual = CameraSettings::default().far;
@@ -15,13 +16,13 @@ pub fn atmosphere(sight: f32) -> Atmosphere {
 }
 
 impl View {
-    /// A plain picture of the view, with the shadows that these maps give. Where they were drawn last, they are not drawn
-    /// again.
+    /// Returns a plain frame of the view with the shadows of these maps. If these maps were drawn last, they
+    /// are not drawn again.
     pub fn frame<'a>(&self, maps: &'a [FittedMap], atmosphere: &'a Atmosphere) -> Frame<'a> {
         Frame { maps_may_stay: true, ..Frame::new(self.camera, self.direction, maps, atmosphere) }
     }
 
-    /// Sun and sky with a haze that suits the camera's far plane.
+    /// Returns sun and sky with a haze for the camera's far plane.
     pub(crate) fn atmosphere(&self) -> Atmosphere {
         atmosphere(self.camera.far)
     }

@@ -1,12 +1,12 @@
-//! How pictures are judged, and the truth that all techniques of a frame share.
+//! Settings for judging pictures, and the truth that all techniques of a frame share.
 
 use glam::DVec3;
 use shadowfit::Camera;
-use shadowfit_truth::{PixelCamera, Truth, TruthLight, TruthSettings};
+use shadowfit_truth::{FlipReference, PixelCamera, Truth, TruthLight, TruthSettings};
 
 use crate::View;
 
-/// How pictures are judged.
+/// Settings for judging pictures.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Judging {
     /// Width and height, in pixels.
@@ -19,10 +19,13 @@ pub struct Judging {
     pub sun_rays: u32,
     /// Whether crawl is measured, which draws each frame once more.
     pub crawl: bool,
-    /// Points of a pixel across and down by which factors are compared with the light on its whole area; 0 for none, since
-    /// each takes two rays.
+    /// Points per pixel, across and down, at which factors are compared with the light on the pixel's area.
+    /// Each point takes two rays. 0 skips the comparison.
     pub area: u32,
-    /// Whether only pixels of the scene's subject count; all do in a scene without one.
+    /// Whether the shaded picture is compared with the same picture with true shadows
+    /// ([ꟻLIP](shadowfit_truth::FlipReference)), which draws each frame once more.
+    pub flip: bool,
+    /// Whether only pixels of the scene's subject count. All pixels count in a scene without a subject.
     pub subject_only: bool,
 }
 
@@ -35,13 +38,14 @@ impl Default for Judging {
             sun_rays: 64,
             crawl: true,
             area: 0,
+            flip: false,
             subject_only: false,
         }
     }
 }
 
 impl Judging {
-    /// How the truth of a view is traced: shadows are judged up to the camera's far plane.
+    /// Returns the settings for tracing the truth of a view. Shadows are judged up to the camera's far plane.
     pub(crate) fn truth_settings(&self, view: &View) -> TruthSettings {
         let to_light = -view.direction.as_dvec3().normalize();
         TruthSettings {
@@ -51,25 +55,31 @@ impl Judging {
         }
     }
 
-    /// The rays of a view's pixels, relative to the world position `origin`, in metres, that of the scene's rays.
+    /// Returns the pixel camera of a view, relative to `origin`, the world position of the scene's rays, in
+    /// metres.
     pub(crate) fn pixel_camera(&self, origin: DVec3, view: &View) -> PixelCamera {
         let camera = Camera { eye: view.camera.eye - origin, ..view.camera };
         PixelCamera::new(camera, self.size)
     }
 }
 
-/// The truth of a frame, for all techniques: traced as soon as the first of them has found the visible triangles.
+/// The truth of a frame, for all techniques. It is traced once the first technique has found the visible
+/// triangles.
 #[derive(Debug, Default)]
-pub struct SharedTruth(Option<Truth>);
+pub struct SharedTruth {
+    truth: Option<Truth>,
+    /// The shaded picture with true shadows.
+    pub(crate) picture: Option<FlipReference>,
+}
 
 impl SharedTruth {
-    /// The truth, once a picture has been judged.
+    /// Returns the truth, once a picture has been judged.
     pub fn get(&self) -> Option<&Truth> {
-        self.0.as_ref()
+        self.truth.as_ref()
     }
 
-    /// The truth, traced on the first call.
+    /// Returns the truth. Traces it on the first call.
     pub(crate) fn or_trace(&mut self, trace: impl FnOnce() -> Truth) -> &Truth {
-        self.0.get_or_insert_with(trace)
+        self.truth.get_or_insert_with(trace)
     }
 }

@@ -1,11 +1,11 @@
-//! Techniques on the same frames: each is fitted, drawn by the viewer's renderer, and judged against rays, without a
-//! window.
+//! Comparison of techniques on the same frames, without a window. Each technique is fitted, drawn by the
+//! viewer's renderer, and judged against rays.
 //!
-//! A [`PreparedScene`] is a scene that can be drawn, traced and fitted to; a [`View`] is a camera and a light. A
-//! [`Technique`](shadowfit::Technique) is all that decides how shadows come out: the [`ShadowFitter`](shadowfit::ShadowFitter)
-//! that engines take makes the maps of a view ([`PosedScene::fit_next`]), and an [`Evaluator`] draws them and judges the
-//! picture. A [`Comparison`] does so for several techniques, and [`tune()`] searches the best one. The viewer draws and
-//! judges through the same evaluator.
+//! A [`PreparedScene`] is a scene that can be drawn, traced and fitted to. A [`View`] is a camera and a
+//! light. A [`Technique`](shadowfit::Technique) holds all settings of the shadows. The public
+//! [`ShadowFitter`](shadowfit::ShadowFitter) fits the maps of a view ([`PosedScene::fit_next`]). An
+//! [`Evaluator`] draws them and judges the picture. A [`Comparison`] does this for several techniques, and
+//! [`tune()`] searches for the best one. The viewer draws and judges through the same evaluator.
 
 mod agreement;
 mod background;

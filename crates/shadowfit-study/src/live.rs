@@ -1,4 +1,4 @@
-//! Pictures judged on the GPU, where they are drawn.
+//! Pictures judged on the GPU that draws them.
 
 use web_time::Instant;
 
@@ -19,21 +19,22 @@ pub struct LiveTruth {
     milliseconds: Option<f32>,
 }
 
-/// Most pictures whose times may wait for the GPU.
+/// Greatest number of pictures whose times may wait for the GPU.
 const PENDING: usize = 4;
 
-/// A picture that is judged live.
+/// Input of a picture that is judged live.
 pub(crate) struct LiveInput<'a> {
     pub(crate) camera: PixelCamera,
     pub(crate) settings: TruthSettings,
     pub(crate) maps: PictureMaps<'a>,
     pub(crate) seen: &'a wgpu::TextureView,
-    /// The shadow factors that the maps of the frame before give at the same points.
+    /// Shadow factors of the previous frame's maps at the same points.
     pub(crate) before: Option<GpuBefore<'a>>,
 }
 
 impl LiveTruth {
-    /// Whether a device can judge pictures. Without enough storage buffers, as with WebGL2's limits, threads do it.
+    /// Returns whether a device can judge pictures. Without enough storage buffers, as in WebGL2, threads
+    /// judge instead.
     pub fn runs_on(gpu: &Gpu) -> bool {
         GpuJudge::runs_with(&gpu.device.limits())
     }
@@ -42,7 +43,7 @@ impl LiveTruth {
     ///
     /// # Errors
     ///
-    /// When the scene is too large for the GPU.
+    /// If the scene is too large for the GPU.
     pub fn new(gpu: &Gpu, scene: &PreparedScene) -> Result<Self> {
         let tracer = GpuTracer::new(&gpu.device, &gpu.queue, &scene.rays().tracer, DVec3::ZERO)
             .with_context(|| scene.scene().name.clone())?;
@@ -50,7 +51,7 @@ impl LiveTruth {
         Ok(Self { tracer, judge, timer, milliseconds: None })
     }
 
-    /// Takes over a new pose of the scene.
+    /// Updates the rays to a new pose of the scene.
     ///
     /// # Errors
     ///
@@ -59,27 +60,28 @@ impl LiveTruth {
         Ok(self.tracer.update(&gpu.device, &gpu.queue, &scene.rays().tracer)?)
     }
 
-    /// Bytes on the GPU.
+    /// Returns the size on the GPU, in bytes.
     pub fn bytes(&self) -> u64 {
         self.tracer.bytes()
     }
 
-    /// The classes of the last picture that was judged, an `R32Uint` texture of [`GpuPixel`]s; `None` before the first.
+    /// Returns the classes of the last judged picture, an `R32Uint` texture of [`GpuPixel`]s; `None` before
+    /// the first picture.
     pub fn classes(&self) -> Option<&wgpu::Texture> {
         self.judge.classes()
     }
 
-    /// Number of pictures that were judged.
+    /// Returns the number of judged pictures.
     pub fn pictures(&self) -> u64 {
         self.judge.pictures()
     }
 
-    /// The sums of the newest picture that the GPU has finished, given once, some frames late; `None` until there are
-    /// any.
+    /// Returns the sums of the newest picture that the GPU has finished, once and some frames late. `None` if
+    /// there are none.
     ///
     /// # Errors
     ///
-    /// When the device is lost.
+    /// If the device is lost.
     pub fn take(&mut self, gpu: &Gpu) -> Result<Option<GpuTally>> {
         let tally = self.judge.take(&gpu.device)?;
         while let Some(milliseconds) = self.timer.take_ms(gpu) {
@@ -88,8 +90,8 @@ impl LiveTruth {
         Ok(tally)
     }
 
-    /// Time in which the GPU judged and summed a picture, in milliseconds: the last time that has come back. `None`
-    /// before that, and on adapters without timestamps.
+    /// Returns the latest known time in which the GPU judged and summed a picture, in milliseconds. `None`
+    /// before the first time arrives, and on adapters without timestamps.
     pub fn milliseconds(&self) -> Option<f32> {
         self.milliseconds
     }
@@ -99,7 +101,8 @@ impl LiveTruth {
         Ok(self.judge.read(&gpu.device, &gpu.queue)?)
     }
 
-    /// Mean time of one picture over `repeats`, in milliseconds: from the first submission to the end of the last.
+    /// Measures the mean time of one picture over `repeats`, in milliseconds, from the first submission to
+    /// the end of the last.
     pub(crate) fn time(&mut self, gpu: &Gpu, input: &LiveInput<'_>, repeats: u32) -> Result<f64> {
         // Clocks and caches warm up first.
         for _ in 0..repeats {

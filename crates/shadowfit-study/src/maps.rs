@@ -7,13 +7,13 @@ use shadowfit::settings::MapSelection;
 use shadowfit_truth::{MapReading, MeasuredMap, PictureMaps};
 use shadowfit_wgpu::ShadowMapDescriptor;
 
-/// View depth, in metres, of the end of maps that have none: measured maps have finite ends.
+/// View depth at which maps without an end stop, in metres. Measured maps need finite ends.
 pub(crate) const NO_END: f64 = 1e9;
 
-/// View depth, in metres, of the end of maps that no point reads by view depth.
+/// Split of maps that no point reads by view depth, in metres of view depth.
 const NOWHERE: f64 = -NO_END;
 
-/// Maps of a descriptor in the form that is measured, for positions relative to a world position. `direction` is the
+/// Converts maps of a descriptor to measured maps, for positions relative to `origin`. `direction` is the
 /// light's direction of travel.
 pub(crate) fn measured(
     maps: &[FittedMap],
@@ -35,7 +35,7 @@ pub(crate) fn measured(
     maps.iter().map(measured).collect()
 }
 
-/// How the maps of a shadow map are read: `maps` are `fits` in the form that is measured.
+/// Returns how the maps of a shadow map are read. `maps` are the measured form of `fits`.
 pub(crate) fn picture_maps<'a>(
     maps: &'a [MeasuredMap],
     fits: &[FittedMap],
@@ -51,7 +51,7 @@ pub(crate) fn picture_maps<'a>(
     PictureMaps { maps, reading, filter_radius: reach, depth_clamp: descriptor.depth_clamp }
 }
 
-/// Clip space from positions relative to a world position.
+/// Returns the matrix clip from positions relative to `origin`.
 fn clip_from(map: &FittedMap, origin: DVec3) -> DMat4 {
     map.projection.clip_from_world.as_dmat4() * DMat4::from_translation(origin - map.projection.origin)
 }

@@ -1,12 +1,12 @@
-//! Text for the standard output and the standard error. `println!` panics if it cannot write;
-//! programs that use these functions end in order.
+//! Text for the standard output and the standard error. `println!` panics if it cannot write. Programs that
+//! use these functions exit cleanly instead.
 
 use std::fmt::Display;
 use std::io::{self, ErrorKind, Write};
 
 use anyhow::{Context, Result};
 
-/// Writes text to the standard output. A reader that has closed its end of the pipe, as `head` does, is no error.
+/// Writes text to the standard output. A closed pipe, as after `head`, is not an error.
 ///
 /// # Errors
 ///
@@ -24,7 +24,7 @@ fn print_to(output: &mut impl Write, text: impl Display) -> Result<()> {
     }
 }
 
-/// Writes a line to the standard error, if that can be written to.
+/// Writes a line to the standard error. Ignores failures.
 pub fn tell(line: impl Display) {
     let _ = writeln!(io::stderr(), "{line}");
 }

@@ -1,4 +1,4 @@
-//! A drawn picture judged against rays on the CPU, wherever that is done: where it was drawn, or in the background.
+//! A drawn picture judged against rays on the CPU, on the drawing thread or in the background.
 
 use std::sync::Arc;
 
@@ -12,63 +12,64 @@ use shadowfit_wgpu::exact_edges::EdgeCounts;
 use crate::maps::{measured, picture_maps};
 use crate::{Judging, SceneRays, View};
 
-/// The maps of the frame before, and their shadow factors at the points of a picture: crawl is measured against them.
+/// The maps of the previous frame, and their shadow factors at the points of a picture, to measure crawl.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrameBefore {
-    /// Its maps.
+    /// The previous frame's maps.
     pub maps: Vec<FittedMap>,
-    /// Its eye; world space, metres.
+    /// The previous frame's eye; world space, metres.
     pub eye: DVec3,
-    /// Its unit direction of view, world axes.
+    /// The previous frame's unit view direction, world axes.
     pub forward: Vec3,
-    /// Share of the light that its maps let through at each pixel of the picture, 0..=1, rows from the top.
+    /// Share of the light that the previous frame's maps let through at each pixel of the picture, 0..=1,
+    /// rows from the top.
     pub factors: Vec<f32>,
 }
 
-/// A picture to judge, with all that the judge needs of the scene. [`Evaluator::judge_job`](crate::Evaluator::judge_job)
-/// makes one.
+/// A picture to judge, with all that the judge needs from the scene. Created by
+/// [`Evaluator::judge_job`](crate::Evaluator::judge_job).
 #[derive(Clone, Debug)]
 pub struct JudgeJob {
-    /// The scene's rays, of the pose in which it was drawn.
+    /// The scene's rays for the pose in which it was drawn.
     pub rays: Arc<SceneRays>,
-    /// What each pixel shows, rows from the top: as many as [`Judging::size`] says. `None` for the sky.
+    /// Content of each pixel, rows from the top, for [`Judging::size`]. `None` for the sky.
     pub pixels: Vec<Option<ProbePixel>>,
     /// The view.
     pub view: View,
-    /// How it is judged.
+    /// Settings for judging it.
     pub judging: Judging,
     /// The maps that it was drawn with.
     pub maps: Vec<FittedMap>,
-    /// What they were drawn into.
+    /// The shadow map that the maps were drawn into.
     pub descriptor: ShadowMapDescriptor,
-    /// Whether each of the scene's instances counts in sums:
+    /// Whether each of the scene's instances counts in sums. See
     /// [`PosedScene::counted_instances`](crate::PosedScene::counted_instances).
     pub counted: Vec<bool>,
-    /// The frame before; `None` where crawl is not measured.
+    /// The previous frame; `None` if crawl is not measured.
     pub before: Option<FrameBefore>,
-    /// How many of its pixels were traced; `None` where edges are filtered.
+    /// Number of its pixels that were traced; `None` if edges are filtered.
     pub traced: Option<EdgeCounts>,
 }
 
 impl JudgeJob {
-    /// The truth of the picture.
+    /// Traces the truth of the picture.
     pub(crate) fn trace(&self) -> Truth {
-        self.trace_while(|| true).expect("nobody gives it up")
+        self.trace_while(|| true).expect("never cancelled")
     }
 
-    /// The same for as long as `goes_on` says so.
+    /// Traces the truth of the picture while `goes_on` returns `true`.
     pub(crate) fn trace_while(&self, goes_on: impl Fn() -> bool + Sync) -> Option<Truth> {
         let seen: Vec<Option<u32>> = self.pixels.iter().map(|pixel| pixel.map(|pixel| pixel.triangle)).collect();
         let camera = self.judging.pixel_camera(self.rays.origin, &self.view);
         Truth::trace_while(&self.rays.tracer, &camera, &self.judging.truth_settings(&self.view), &seen, goes_on)
     }
 
-    /// The picture judged by its truth, and its crawl against the frame before.
+    /// Judges the picture by its truth, and measures its crawl against the previous frame.
     pub(crate) fn judge_by(&self, truth: &Truth) -> Judged {
-        self.judge_while(truth, || true).expect("nobody gives it up")
+        self.judge_while(truth, || true).expect("never cancelled")
     }
 
-    /// The same for as long as `goes_on` says so.
+    /// Judges the picture while `goes_on` returns `true`.
     pub(crate) fn judge_while(&self, truth: &Truth, goes_on: impl Fn() -> bool + Sync) -> Option<Judged> {
         let Self { rays, maps, descriptor, .. } = self;
         let factors = factors(&self.pixels);
@@ -97,7 +98,7 @@ impl JudgeJob {
     }
 }
 
-/// The shadow factor of each pixel; the sky is lit.
+/// Returns the shadow factor of each pixel. The sky is lit.
 pub(crate) fn factors(pixels: &[Option<ProbePixel>]) -> Vec<f32> {
     pixels.iter().map(|pixel| pixel.map_or(1.0, |pixel| pixel.factor)).collect()
 }

@@ -1,7 +1,7 @@
-//! The rays of an animated scene: those of its present pose, those of an earlier one, and those that a thread makes.
+//! The rays of an animated scene, for the current pose and for an earlier one, and rays that a thread builds.
 //!
-//! Making rays takes a tenth of a second for each million triangles or more, too long for a picture to wait. So a thread
-//! makes them while those of an earlier pose are still read, and the two sets change places:
+//! Building rays takes at least a tenth of a second per million triangles, too long for a picture to wait. A
+//! thread therefore builds them while the rays of an earlier pose are still in use. The two sets take turns:
 //!
 //! ```text
 //!   request ──► making ──take──► present ──pose changes──► earlier ──newer ones come──► spare
@@ -25,14 +25,14 @@ pub(crate) struct PosedRays {
     others: Mutex<Others>,
 }
 
-/// All rays but those of the present pose.
+/// All rays except the current pose's.
 #[derive(Debug, Default)]
 struct Others {
     earlier: Option<Earlier>,
-    /// Rays that were replaced by the earlier ones: the next ones are made from them.
+    /// Replaced earlier rays, reused to build the next ones.
     spare: Option<Arc<SceneRays>>,
     making: Option<Making>,
-    /// The pose whose rays a thread failed to make; it is not asked again.
+    /// Pose whose rays a thread failed to build. It is not requested again.
     failed: Option<u64>,
 }
 
@@ -42,7 +42,7 @@ struct Earlier {
     rays: Arc<SceneRays>,
 }
 
-/// Rays that a thread makes.
+/// Rays that a thread is building.
 #[derive(Debug)]
 struct Making {
     pose: u64,
@@ -50,13 +50,13 @@ struct Making {
 }
 
 impl Making {
-    /// Waits for the rays; in a browser, where nothing else runs meanwhile, they are there or never will be.
+    /// Waits for the rays. In a browser nothing else runs meanwhile, so they exist now or never will.
     fn wait(self) -> Option<SceneRays> {
         if cfg!(target_family = "wasm") { self.result.try_recv().ok() } else { self.result.recv().ok() }
     }
 }
 
-/// A scene in a pose, and the world position, in metres, that its rays are relative to.
+/// A scene in a pose, and the world position that its rays are relative to, in metres.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Posed<'a> {
     pub(crate) scene: &'a Arc<Scene>,
@@ -65,7 +65,7 @@ pub(crate) struct Posed<'a> {
 }
 
 impl PosedRays {
-    /// The scene has another pose: the present rays become earlier ones.
+    /// Advances to another pose of the scene. The current rays become the earlier ones.
     pub(crate) fn change_pose(&mut self) {
         let pose = self.pose;
         self.pose += 1;
@@ -74,7 +74,7 @@ impl PosedRays {
         }
     }
 
-    /// The rays of the present pose. Makes them, or waits for them, where they do not exist.
+    /// Returns the rays for the current pose. Builds them or waits for them if missing.
     pub(crate) fn get_or_make(&self, posed: Posed<'_>) -> &Arc<SceneRays> {
         self.present.get_or_init(|| {
             let mut others = self.others();
@@ -88,23 +88,24 @@ impl PosedRays {
         })
     }
 
-    /// The rays of the present pose, if they exist.
+    /// Returns the rays for the current pose, if they exist.
     pub(crate) fn ready(&self) -> Option<Arc<SceneRays>> {
         self.present.get().cloned()
     }
 
-    /// The rays of the present pose alone, for another thread.
+    /// Returns only the rays for the current pose, for another thread.
     pub(crate) fn snapshot(&self) -> Self {
         Self { present: self.ready().map_or_else(OnceLock::new, OnceLock::from), ..Self::default() }
     }
 
-    /// The latest rays, and whether they are of the present pose.
+    /// Returns the latest rays, and whether they are for the current pose.
     pub(crate) fn latest(&self) -> Option<(Arc<SceneRays>, bool)> {
         let earlier = || self.others().earlier.as_ref().map(|earlier| (Arc::clone(&earlier.rays), false));
         self.ready().map(|rays| (rays, true)).or_else(earlier)
     }
 
-    /// Starts a thread that makes the rays of the present pose, unless they exist or a thread is already at work.
+    /// Starts a thread that builds the rays for the current pose, unless they exist or a thread is already
+    /// building.
     pub(crate) fn request(&mut self, posed: Posed<'_>) {
         let pose = self.pose;
         let is_there = self.present.get().is_some();
@@ -117,7 +118,7 @@ impl PosedRays {
         let (sender, result) = channel();
         let (scene, its_pose, origin) = (Arc::clone(posed.scene), posed.pose.clone(), posed.origin);
         let work = move || {
-            // Nobody receives once the scene is gone.
+            // There is no receiver once the scene is dropped.
             let _ = sender.send(make(&scene, &its_pose, origin, from));
         };
         match in_background("rays", work) {
@@ -126,7 +127,7 @@ impl PosedRays {
         }
     }
 
-    /// Takes the rays that a thread has made, and returns whether there were any.
+    /// Takes the rays that a thread has built, and returns whether there were any.
     pub(crate) fn take(&mut self) -> bool {
         let present = self.pose;
         let others = self.others_mut();
@@ -158,15 +159,16 @@ impl PosedRays {
 }
 
 impl Others {
-    /// The rays of the later of two earlier poses stay; the others become spare.
+    /// Keeps the rays of the later of two earlier poses. The others become spare.
     fn replace_earlier(&mut self, found: Earlier) {
         let is_older = self.earlier.as_ref().is_some_and(|known| known.pose > found.pose);
         self.spare = if is_older { Some(found.rays) } else { self.earlier.replace(found).map(|known| known.rays) };
     }
 }
 
-/// Makes the rays of a pose: from others of the same scene where there are some. These are moved in place where nobody
-/// else reads them, and copied otherwise. Both are several times as fast as building a new hierarchy.
+/// Builds the rays for a pose, from other rays of the same scene if there are any. These are moved in place
+/// if they have no other readers, and copied otherwise. Both are several times faster than building a new
+/// hierarchy.
 fn make(scene: &Scene, pose: &Pose, origin: DVec3, from: Option<Arc<SceneRays>>) -> SceneRays {
     let Some(from) = from else { return SceneRays::from_origin(scene, pose, origin) };
     let mut rays = Arc::unwrap_or_clone(from);
@@ -183,7 +185,7 @@ mod tests {
 
     use super::*;
 
-    /// A scene that plays, and its rays.
+    /// A playing scene, and its rays.
     struct Player {
         scene: Arc<Scene>,
         pose: Pose,

@@ -4,49 +4,52 @@ use glam::{DVec3, Vec2, Vec3, Vec4};
 use shadowfit_scene::{Casting, Deformed, Image, Instance, Pose, Primitive, Scene};
 use shadowfit_truth::{AlphaImage, CutMaterial, CutOut, CutOuts, Tracer, Wrap};
 
-/// The casters of a scene in one pose, the same as in the shadow pass. Surfaces that cast nothing are left out.
+/// The casters of a scene in one pose, as in the shadow pass. Surfaces that cast no shadow are left out.
 #[derive(Clone, Debug)]
 pub struct SceneRays {
-    /// Answers rays against the casters' triangles, relative to the origin, in metres; they have the renderer's numbers.
+    /// Tracer of the casters' triangles, relative to the origin, in metres. Triangles have the renderer's
+    /// numbers.
     pub tracer: Tracer,
     /// World position that rays and triangles are relative to, in metres.
     pub origin: DVec3,
-    /// Number of the first triangle of each instance, and last how many there are. What casts nothing has none.
+    /// Number of the first triangle of each instance, followed by the total. An instance that casts no shadow
+    /// has no triangles.
     firsts: Vec<u32>,
-    /// Whether each instance is mirrored: its cut-outs have other corners then.
+    /// Whether each instance is mirrored. If so, the order of its cut-outs' corners differs.
     mirrored: Vec<bool>,
 }
 
 impl SceneRays {
-    /// Moves everything to another pose of the same scene.
+    /// Moves all triangles to another pose of the same scene.
     pub fn set_pose(&mut self, scene: &Scene, pose: &Pose) {
         let casters = Casters::new(scene, pose, self.origin);
         let keeps_cut_outs = casters.firsts == self.firsts && casters.mirrored == self.mirrored;
         if keeps_cut_outs && self.tracer.set_triangles(casters.corners()).is_ok() {
             return;
         }
-        // It is another scene.
+        // This is another scene.
         *self = Self::from_origin(scene, pose, self.origin);
     }
 
-    /// Makes a scene's casters in a pose ready for rays. `origin` is the world position, in metres, that everything is
-    /// relative to: f32 rays are exact only for scenes near it.
+    /// Prepares a scene's casters in a pose for rays. All positions are relative to `origin`, a world
+    /// position in metres. Rays are in f32, exact only for scenes near it.
     pub fn from_origin(scene: &Scene, pose: &Pose, origin: DVec3) -> Self {
         let casters = Casters::new(scene, pose, origin);
         let tracer = Tracer::new(casters.corners()).with_cut_outs(casters.cut_outs());
         Self { tracer, origin, firsts: casters.firsts, mirrored: casters.mirrored }
     }
 
-    /// The instance of a triangle, an index into [`Scene::instances`]; `None` beyond the last triangle.
+    /// Returns the instance of a triangle, an index into [`Scene::instances`]; `None` beyond the last
+    /// triangle.
     pub fn instance(&self, triangle: u32) -> Option<u32> {
         let instances = self.firsts.len() - 1;
-        // What has no triangles begins where the next one does.
+        // An instance without triangles has the same first number as the next one.
         let after = self.firsts.partition_point(|first| *first <= triangle);
         (after <= instances).then(|| after as u32 - 1)
     }
 }
 
-/// What casts in a pose, instance by instance.
+/// The casters of a pose, instance by instance.
 struct Casters<'a> {
     scene: &'a Scene,
     pose: &'a Pose,
@@ -74,13 +77,13 @@ impl<'a> Casters<'a> {
         Self { scene, pose, origin, instances, deformed, firsts, mirrored }
     }
 
-    /// Those that have triangles, each with its index.
+    /// Returns the instances that have triangles, each with its index.
     fn casting(&self) -> impl Iterator<Item = (usize, &Instance)> {
         let casts = |(index, _): &(usize, _)| self.firsts[*index] < self.firsts[*index + 1];
         self.instances.iter().enumerate().filter(casts)
     }
 
-    /// All triangles, in the order of the renderer's numbers.
+    /// Returns all triangles, in the order of the renderer's numbers.
     fn corners(&self) -> impl Iterator<Item = [Vec3; 3]> {
         let of_instance = |(index, instance): (usize, &Instance)| {
             self.pose.corners_from(self.scene, instance, self.deformed[index].as_ref(), self.origin)
@@ -88,7 +91,7 @@ impl<'a> Casters<'a> {
         Counted { left: self.firsts.last().map_or(0, |all| *all as usize), all: self.casting().flat_map(of_instance) }
     }
 
-    /// The masked triangles, and the alpha of the images that they have.
+    /// Returns the masked triangles, and the alpha of their images.
     fn cut_outs(&self) -> CutOuts {
         let masked: Vec<(u32, CutOut)> = self
             .casting()
@@ -97,7 +100,7 @@ impl<'a> Casters<'a> {
                 let corners = primitive.indices.as_chunks::<3>().0;
                 let has_holes = matches!(self.scene.casting(primitive), Casting::CutOut(_));
                 let corners = if has_holes { corners } else { &[] };
-                // As the triangles of mirrored instances have them.
+                // The triangles of mirrored instances have this order.
                 let is_mirrored = self.mirrored[index];
                 let in_order = move |[a, b, c]: [u32; 3]| if is_mirrored { [a, c, b] } else { [a, b, c] };
                 let cut_out = move |corners: &[u32; 3]| cut_out(self.scene, primitive, in_order(*corners));
@@ -111,7 +114,7 @@ impl<'a> Casters<'a> {
     }
 }
 
-/// An iterator that knows its length, so that lists are made in one piece.
+/// An iterator that knows its length, so that a list needs only one allocation.
 struct Counted<I> {
     all: I,
     left: usize,
@@ -134,7 +137,7 @@ fn primitive<'a>(scene: &'a Scene, instance: &Instance) -> &'a Primitive {
     &scene.meshes[instance.mesh].primitives[instance.primitive]
 }
 
-/// The alpha of an image; one without texels has no holes.
+/// Returns the alpha of an image. An image without texels becomes opaque.
 fn alpha_image(image: &Image) -> AlphaImage {
     let alpha = image.rgba.chunks_exact(4).map(|texel| texel[3]).collect();
     let opaque = || AlphaImage::new(1, 1, vec![255]).expect("one texel for one by one");
@@ -182,7 +185,7 @@ mod tests {
     #[test]
     fn each_triangle_is_that_of_the_scene_and_knows_its_instance() {
         let mut scene = Scene { blended_casters: BlendedCasters::Never, ..default_scene() };
-        // The surfaces of every second material cast nothing.
+        // The surfaces of every second material cast no shadow.
         for material in scene.materials.iter_mut().skip(1).step_by(2) {
             material.alpha = AlphaMode::Blend;
         }
@@ -212,7 +215,7 @@ mod tests {
             let turned = DMat4::from_scale(DVec3::new(-1.0, 1.0, 1.0)) * node.rest.matrix();
             node.rest.matrix = Some(turned);
         }
-        // Where each masked triangle has which texture coordinates, its corners in any order.
+        // Texture coordinates at the corners of each masked triangle, with the corners in any order.
         let places = |rays: &SceneRays, mirror: f32| -> Vec<Vec<[u32; 5]>> {
             let cut_outs = rays.tracer.cut_outs();
             let of_triangle = |triangle: u32| {

@@ -1,5 +1,5 @@
-//! A scene prepared for drawing and judging: uploaded, with boxes for fits, and with rays that are made when they are
-//! first needed or on a thread.
+//! A scene prepared for drawing and judging: uploaded, with boxes for fits, and with rays that are built on
+//! first use or on a thread.
 
 use core::fmt;
 use std::sync::Arc;
@@ -15,11 +15,11 @@ use crate::boxes::SceneBoxes;
 use crate::file_camera::{camera_reaches, file_camera};
 use crate::posed_rays::{Posed, PosedRays};
 
-/// Greatest coordinate of a scene's middle, in metres, up to which its rays are relative to the world's own origin: f32
-/// positions are that near to it exact to about a tenth of the rays' offset of a millimetre.
+/// Greatest coordinate of a scene's middle, in metres, up to which its rays are relative to the world's
+/// origin. That near to it, f32 positions are exact to about a tenth of the rays' offset of a millimetre.
 const NEAR_THE_ORIGIN: f32 = 1000.0;
 
-/// Origin of the rays: that of the world, or the middle of a scene that is far from it.
+/// Returns the origin of the rays: the world's origin, or the middle of a scene that is far from it.
 fn origin_of(bounds: &Aabb) -> DVec3 {
     let middle = (bounds.min + bounds.max) * 0.5;
     if middle.abs().max_element() <= NEAR_THE_ORIGIN { DVec3::ZERO } else { middle.as_dvec3().round() }
@@ -27,13 +27,16 @@ fn origin_of(bounds: &Aabb) -> DVec3 {
 
 /// Distance above the surface at which shadow rays start, in metres, in scenes of 2 m to 1 km.
 const RAY_OFFSET: f64 = 1e-3;
-/// Greatest share of a scene's size that this distance is, so that rays start below the next surface of a small model.
+/// Greatest ratio of this distance to a scene's size, so that rays start below the next surface of a small
+/// model.
 const RAY_OFFSET_PER_SIZE: f64 = 5e-4;
-/// Least share of the greatest coordinate that it is, about 16 times the rounding of an f32 position.
+/// Smallest ratio of this distance to the greatest coordinate, about 16 times the rounding of an f32
+/// position.
 const RAY_OFFSET_PER_COORDINATE: f64 = 1e-6;
 
-/// Returns the distance above the surface at which shadow rays start, in metres, for a scene with these bounds whose rays
-/// are relative to `origin`: a millimetre, less in models below 2 m, more where coordinates exceed 1 km.
+/// Returns the distance above the surface at which shadow rays start, in metres, for a scene with these
+/// bounds and rays relative to `origin`. It is a millimetre, less in models below 2 m, and more if
+/// coordinates exceed 1 km.
 fn ray_offset(bounds: &Aabb, origin: DVec3) -> f64 {
     let size = f64::from((bounds.max - bounds.min).length());
     let farthest = |corner: Vec3| (corner.as_dvec3() - origin).abs().max_element();
@@ -43,12 +46,12 @@ fn ray_offset(bounds: &Aabb, origin: DVec3) -> f64 {
     RAY_OFFSET.min(largest).max(coordinate * RAY_OFFSET_PER_COORDINATE)
 }
 
-/// Why a scene cannot be made ready, with its name.
+/// Reason why a scene cannot be prepared, with its name.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum PrepareError {
-    /// It has no triangles.
+    /// The scene has no triangles.
     NothingToDraw(String),
-    /// The device has no memory for it, even with the smallest textures, or refuses it.
+    /// The device is out of memory for the scene, even with the smallest textures, or refuses it.
     Device(String, DeviceFault),
 }
 
@@ -59,7 +62,7 @@ impl fmt::Display for PrepareError {
             Self::Device(name, fault) => {
                 write!(
                     f,
-                    "{name}: the scene cannot be given to the graphics device: {fault}; use one with fewer triangles"
+                    "{name}: the scene cannot be uploaded to the graphics device: {fault}; use one with fewer triangles"
                 )
             }
         }
@@ -70,8 +73,8 @@ impl core::error::Error for PrepareError {}
 
 /// A scene in a pose, ready to be drawn, traced and fitted to.
 ///
-/// Callers that can wait take its [`rays`](PosedScene::rays). A window takes the latest rays in each frame, and a
-/// thread makes those that are missing:
+/// Callers that can wait use its [`rays`](PosedScene::rays). A window uses the latest rays in each frame, and
+/// a thread builds missing ones:
 ///
 /// ```no_run
 /// # fn frame(scene: &mut shadowfit_study::PreparedScene) {
@@ -83,12 +86,12 @@ impl core::error::Error for PrepareError {}
 /// # }
 /// ```
 ///
-/// It can be made on one thread and used on another.
+/// It can be created on one thread and used on another.
 #[derive(Debug)]
 pub struct PreparedScene {
     /// The scene on the GPU.
     pub gpu_scene: GpuScene,
-    /// Why its casters cannot be traced, once that was found out.
+    /// Reason why its casters cannot be traced, once known.
     no_gpu_rays: Option<RayError>,
     posed: PosedScene,
 }
@@ -103,19 +106,19 @@ pub struct PosedScene {
     objects: SceneBoxes,
     origin: DVec3,
     ray_offset: f64,
-    /// Distance that each camera of the file sees.
+    /// Far distance of each camera in the file, in metres.
     reaches: Vec<f32>,
     rays: PosedRays,
 }
 
 impl PreparedScene {
-    /// Makes a scene ready, in its rest pose, with boxes and without rays. `layout` is
+    /// Prepares a scene in its rest pose, with boxes and without rays. `layout` is
     /// [`shadowfit_render::passes::material_layout`], the same for all renderers.
     ///
     /// # Errors
     ///
-    /// [`PrepareError`] for a scene without triangles, and one that the device has no memory for. Where smaller textures
-    /// are enough, it gets these, and a note.
+    /// [`PrepareError`] if the scene has no triangles or the device lacks the memory. If smaller textures fit
+    /// into memory, the scene gets these and a note instead.
     pub fn new(gpu: &Gpu, layout: &wgpu::BindGroupLayout, mut scene: Scene) -> Result<Self, PrepareError> {
         let pose = scene.pose(None, 0.0);
         let Some(bounds) = scene.bounds(&pose) else {
@@ -147,11 +150,11 @@ impl PreparedScene {
         Ok(Self { gpu_scene, no_gpu_rays: None, posed })
     }
 
-    /// Gives the scene in its present pose to another device, in place of one that was lost.
+    /// Uploads the scene in its current pose to another device, for example after the loss of a device.
     ///
     /// # Errors
     ///
-    /// [`PrepareError`], as for a new one; the scene cannot be drawn then.
+    /// [`PrepareError`] as for [`Self::new`]. The scene cannot be drawn then.
     pub fn move_to(&mut self, gpu: &Gpu, layout: &wgpu::BindGroupLayout) -> Result<(), PrepareError> {
         let Self { gpu_scene, no_gpu_rays, posed } = self;
         let (moved, _) = GpuScene::within_memory(gpu, layout, &posed.scene, &posed.pose)
@@ -160,8 +163,8 @@ impl PreparedScene {
         Ok(())
     }
 
-    /// Poses the scene at a time of an animation, in seconds; in its rest pose where it has no such animation. Nothing
-    /// changes where it has that pose already.
+    /// Poses the scene at a time of an animation, in seconds, or in its rest pose if there is no such
+    /// animation. Does nothing if the scene already has that pose.
     pub fn set_time(&mut self, gpu: &Gpu, animation: usize, seconds: f32) {
         let Self { gpu_scene, posed, .. } = self;
         let pose = posed.scene.pose(Some(animation), seconds);
@@ -177,11 +180,12 @@ impl PreparedScene {
         posed.rays.change_pose();
     }
 
-    /// Decides whether blended surfaces cast. Uploads the scene anew if that changes, in its present pose.
+    /// Sets whether blended surfaces cast shadows. If that changes, uploads the scene again in its current
+    /// pose.
     ///
     /// # Errors
     ///
-    /// [`PrepareError`], as for a new one; the scene stays as it was.
+    /// [`PrepareError`] as for [`Self::new`]. The scene is then unchanged.
     pub fn set_blended_casters(
         &mut self,
         gpu: &Gpu,
@@ -205,11 +209,12 @@ impl PreparedScene {
         Ok(())
     }
 
-    /// Makes the scene ready for edges that are traced, unless it is.
+    /// Prepares the scene for traced edges, unless it is prepared.
     ///
     /// # Errors
     ///
-    /// [`RayError`] for a scene that is too large for the device, and one without compute shaders; edges are filtered then.
+    /// [`RayError`] if the scene is too large for the device, or the device lacks compute shaders. Edges are
+    /// filtered then.
     pub fn make_gpu_rays(&mut self, gpu: &Gpu) -> Result<(), RayError> {
         if let Some(error) = &self.no_gpu_rays {
             return Err(error.clone());
@@ -235,7 +240,7 @@ impl core::ops::DerefMut for PreparedScene {
 }
 
 impl PosedScene {
-    /// The scene in its present pose for another thread, with the rays that exist.
+    /// Returns a copy of the scene in its current pose for another thread, with the existing rays.
     #[must_use]
     pub fn snapshot(&self) -> Self {
         Self {
@@ -251,80 +256,82 @@ impl PosedScene {
         }
     }
 
-    /// The scene.
+    /// Returns the scene.
     pub fn scene(&self) -> &Scene {
         &self.scene
     }
 
-    /// The scene, to share with threads.
+    /// Returns the scene, to share with threads.
     pub fn shared_scene(&self) -> Arc<Scene> {
         Arc::clone(&self.scene)
     }
 
-    /// The present pose of its nodes.
+    /// Returns the current pose of its nodes.
     pub fn pose(&self) -> &Pose {
         &self.pose
     }
 
-    /// World bounds in the present pose, in metres.
+    /// Returns the world bounds in the current pose, in metres.
     pub fn bounds(&self) -> Aabb {
         self.bounds
     }
 
-    /// World bounds of the scene's subject in the present pose, in metres; those of the scene where it has none.
+    /// Returns the world bounds of the scene's subject in the current pose, in metres, or of the scene if it
+    /// has no subject.
     pub fn subject_bounds(&self) -> Aabb {
         let subject = self.scene.subject.and_then(|subject| self.scene.node_bounds(&self.pose, subject));
         subject.unwrap_or(self.bounds)
     }
 
-    /// Distance above the surface at which shadow rays start by default, in metres: a millimetre, less for a scene smaller
-    /// than 2 m, more where coordinates exceed 1 km. It stays while the scene moves.
+    /// Returns the default distance above the surface at which shadow rays start, in metres: a millimetre,
+    /// less for a scene below 2 m, and more if coordinates exceed 1 km. It stays constant while the scene
+    /// moves.
     pub fn ray_offset(&self) -> f64 {
         self.ray_offset
     }
 
-    /// Returns a camera of the file by its index, in the present pose, as [`file_camera`] does. Near and far plane stay while
-    /// the scene moves. `None` without such a camera, or if its node has no size.
+    /// Returns a camera of the file by its index, in the current pose, like [`file_camera`]. Near and far
+    /// plane stay constant while the scene moves. `None` without such a camera, or if its node has no size.
     pub fn file_camera(&self, index: usize, aspect: f32) -> Option<Camera> {
         file_camera(self.scene.cameras.get(index)?, &self.pose, *self.reaches.get(index)?, aspect)
     }
 
-    /// World position that [`Self::rays`] are relative to, in metres.
+    /// Returns the world position that [`Self::rays`] are relative to, in metres.
     pub fn origin(&self) -> DVec3 {
         self.origin
     }
 
-    /// The casters in their present pose, for rays, for callers that can wait: made when first asked for after the pose
-    /// has changed, which takes a tenth of a second or more for each million triangles.
+    /// Returns the casters in their current pose, for rays, to callers that can wait. The first call after a
+    /// change of pose builds them, which takes at least a tenth of a second per million triangles.
     pub fn rays(&self) -> &SceneRays {
         self.rays.get_or_make(self.posed())
     }
 
-    /// The same, to share with threads.
+    /// Returns the rays like [`Self::rays`], to share with threads.
     pub fn shared_rays(&self) -> Arc<SceneRays> {
         Arc::clone(self.rays.get_or_make(self.posed()))
     }
 
-    /// The rays of the present pose, if they exist. Makes nothing.
+    /// Returns the rays for the current pose, if they exist. Builds nothing.
     pub fn ready_rays(&self) -> Option<Arc<SceneRays>> {
         self.rays.ready()
     }
 
-    /// The latest rays, and whether they are of the present pose. Makes nothing.
+    /// Returns the latest rays, and whether they are for the current pose. Builds nothing.
     pub fn latest_rays(&self) -> Option<(Arc<SceneRays>, bool)> {
         self.rays.latest()
     }
 
-    /// Starts a thread that makes the rays of the present pose, for [`Self::take_rays`] in a later frame. Nothing
-    /// happens where they exist already, or while a thread still makes those of an earlier pose: called in each frame
-    /// of an animation, it makes rays one after the other, which lag behind by a few frames.
+    /// Starts a thread that builds the rays for the current pose, for [`Self::take_rays`] in a later frame.
+    /// Does nothing if they exist, or while a thread still builds rays for an earlier pose. Called in each
+    /// frame of an animation, it builds one set of rays after another, which lag behind by a few frames.
     pub fn request_rays(&mut self) {
         let Self { rays, scene, pose, origin, .. } = self;
         rays.request(Posed { scene, pose, origin: *origin });
     }
 
-    /// Takes the rays that a thread has made, without waiting for them, and returns whether there were any. Those of an
-    /// earlier pose count too: [`Self::latest_rays`] has them.
+    /// Takes the rays that a thread has built, without waiting, and returns whether there were any. They may
+    /// be for an earlier pose and are then returned by [`Self::latest_rays`].
     pub fn take_rays(&mut self) -> bool {
         self.rays.take()
     }
@@ -333,18 +340,18 @@ impl PosedScene {
         Posed { scene: &self.scene, pose: &self.pose, origin: self.origin }
     }
 
-    /// A camera relative to the origin of the rays.
+    /// Returns a camera relative to the origin of the rays.
     pub fn camera_for_rays(&self, camera: impl Into<Camera>) -> Camera {
         let camera = camera.into();
         Camera { eye: camera.eye - self.origin, ..camera }
     }
 
-    /// Number of triangles, every instance counted.
+    /// Returns the number of triangles of all instances.
     pub fn triangles(&self) -> u64 {
         self.count(|_| true)
     }
 
-    /// Number of triangles that cast, those with holes included.
+    /// Returns the number of triangles that cast shadows, including triangles with holes.
     pub fn casting_triangles(&self) -> u64 {
         self.count(|primitive| self.scene.casting(primitive) != Casting::Nothing)
     }
@@ -357,7 +364,8 @@ impl PosedScene {
         self.scene.instances().iter().map(triangles).sum()
     }
 
-    /// Whether each of the scene's instances counts in sums: all do, or those of its subject if it has one.
+    /// Returns whether each of the scene's instances counts in sums. With `subject_only`, only the subject's
+    /// instances count, if the scene has a subject.
     pub fn counted_instances(&self, subject_only: bool) -> Vec<bool> {
         let root = self.scene.subject.filter(|_| subject_only);
         let counts = |node| root.is_none_or(|root| self.scene.is_descendant(node, root));

@@ -1,7 +1,7 @@
-//! Settings as TOML, by the parameter table: for saved settings and for files of techniques.
+//! Settings as TOML, driven by the parameter table, for saved settings and technique files.
 //!
-//! A table for each group and a line for each parameter. Every parameter is written, so that a new default does not
-//! change saved settings.
+//! The file has a table for each group and a line for each parameter. Every parameter is written, so that a
+//! new default does not change saved settings.
 
 use std::fmt::Write as _;
 
@@ -11,37 +11,37 @@ use shadowfit_params::tool::Settings;
 use shadowfit_params::{self as params, Group, Inputs, Kind, PARAMETERS, Parameter};
 use toml::Value;
 
-/// Settings as TOML text that [`settings_from_toml`] reads: a table for each group, its name behind `prefix`, such as
-/// `settings.`.
+/// Writes settings as TOML text for [`settings_from_toml`]: a table for each group, with `prefix` before its
+/// name, such as `settings.`.
 ///
-/// Numbers that are not finite are left out. Those out of their range, such as the near plane of a tiny scene, are written
-/// as the nearest one within, which can be read.
+/// Numbers that are not finite are left out. A number out of its range, such as the near plane of a tiny
+/// scene, is written as the nearest number in the range, so that it can be read.
 pub fn settings_to_toml(settings: &Settings, prefix: &str) -> String {
     write_settings(settings, prefix, |_| true)
 }
 
-/// The tables of [`settings_to_toml`] that make up a technique and what its fits are given.
+/// Writes the tables of [`settings_to_toml`] for a technique and the inputs of its fits.
 pub fn technique_to_toml(technique: &Technique, inputs: Inputs, prefix: &str) -> String {
     let settings = Settings { inputs, ..Settings::default().with_technique(*technique) };
     write_settings(&settings, prefix, is_of_technique_file)
 }
 
-/// Whether files of techniques have a group: the parts of a technique, and what its fits are given.
+/// Returns whether technique files contain a group: the parts of a technique, and the inputs of its fits.
 pub(crate) fn is_of_technique_file(group: Group) -> bool {
     group.is_technique() || group == Group::Input
 }
 
-/// Sets the parameters that a table names, and leaves all others as they are.
+/// Sets the parameters that a table names. All others stay unchanged.
 ///
 /// # Errors
 ///
-/// When the table has an unknown group or key, or a value that the parameter does not take. The settings are unchanged
-/// then.
+/// If the table has an unknown group or key, or a value that the parameter does not accept. The settings are
+/// then unchanged.
 pub fn settings_from_toml(table: &toml::Table, settings: &mut Settings) -> Result<()> {
     read_settings(table, |_| true, settings)
 }
 
-/// The tables of some groups.
+/// Writes the tables of some groups.
 pub(crate) fn write_settings(settings: &Settings, prefix: &str, has: impl Fn(Group) -> bool) -> String {
     let settings = &within_ranges(settings);
     let mut text = String::new();
@@ -57,13 +57,14 @@ pub(crate) fn write_settings(settings: &Settings, prefix: &str, has: impl Fn(Gro
     text
 }
 
-/// Settings with each finite number in its parameter's range.
+/// Returns settings with each finite number clamped to its parameter's range.
 fn within_ranges(settings: &Settings) -> Settings {
     let mut within = *settings;
     for parameter in PARAMETERS {
         let Kind::Number(range) = &parameter.kind else { continue };
         let is_out = |number: &f64| number.is_finite() && !(range.min..=range.max).contains(number);
-        // Setting an angle takes the sun from the file, and this parameter, which comes after the angles, gives it back.
+        // Setting an angle resets the choice of the file's sun. This parameter comes after the angles and
+        // restores it.
         let follows = parameter.id == "light.file";
         if follows || parameter.number(settings).is_some_and(|number| is_out(&number)) {
             parameter.copy(&mut within, settings);
@@ -72,14 +73,15 @@ fn within_ranges(settings: &Settings) -> Settings {
     within
 }
 
-/// Sets the parameters of some groups from a table. Any other group is an error, and the settings are unchanged then.
+/// Sets the parameters of some groups from a table. Any other group is an error. The settings are then
+/// unchanged.
 pub(crate) fn read_settings(table: &toml::Table, has: impl Fn(Group) -> bool, settings: &mut Settings) -> Result<()> {
     let mut left = table.clone();
     let mut read = *settings;
-    // In the order of the table: a scheme comes before the numbers that only it has.
+    // In the order of the parameter table, so that a scheme comes before the numbers that only it has.
     for parameter in PARAMETERS.iter().filter(|parameter| has(parameter.group)) {
         let Some(group) = left.get_mut(parameter.group.id()) else { continue };
-        let group = group.as_table_mut().with_context(|| format!("{} is no table", parameter.group.id()))?;
+        let group = group.as_table_mut().with_context(|| format!("{} is not a table", parameter.group.id()))?;
         let Some(value) = group.remove(key(parameter)) else { continue };
         params::set_from_str(&mut read, parameter.id, &text_of(&value).with_context(|| parameter.id)?)?;
     }
@@ -88,30 +90,30 @@ pub(crate) fn read_settings(table: &toml::Table, has: impl Fn(Group) -> bool, se
     Ok(())
 }
 
-/// A parameter's name in its group.
+/// Returns a parameter's name in its group.
 fn key(parameter: &Parameter) -> &'static str {
     parameter.id.split_once('.').map_or(parameter.id, |(_, key)| key)
 }
 
-/// A parameter's value in TOML: a number, true or false, or an option's id in quotes.
+/// Returns a parameter's value in TOML: a number, true or false, or an option's id in quotes.
 fn value_of(parameter: &Parameter, settings: &Settings) -> String {
     let text = params::format_value(settings, parameter);
     let is_bare = parameter.number(settings).is_some() || matches!(parameter.kind, Kind::Toggle);
     if is_bare { text } else { Value::from(text).to_string() }
 }
 
-/// A TOML value as text for the parameter table.
+/// Returns a TOML value as text for the parameter table.
 fn text_of(value: &Value) -> Result<String> {
     Ok(match value {
         Value::String(text) => text.clone(),
         Value::Integer(number) => number.to_string(),
         Value::Float(number) => number.to_string(),
         Value::Boolean(on) => on.to_string(),
-        other => bail!("{other} is no number, text, true or false"),
+        other => bail!("{other} is not a number, text, true or false"),
     })
 }
 
-/// Refuses what is left in a file: tables and keys outside the groups that it `has`.
+/// Returns an error for the remaining tables and keys of a file, outside the groups that it `has`.
 fn refuse_the_rest(file: &toml::Table, has: impl Fn(Group) -> bool) -> Result<()> {
     let groups: Vec<Group> = Group::ALL.into_iter().filter(|group| has(*group)).collect();
     for (name, value) in file {
@@ -171,9 +173,9 @@ mod tests {
         let text = settings_to_toml(&settings, "settings.");
         let file = table(&text);
         let mut read = Settings::default();
-        settings_from_toml(file["settings"].as_table().expect("a table"), &mut read).expect("what was written");
+        settings_from_toml(file["settings"].as_table().expect("a table"), &mut read).expect("the written text");
         assert_eq!(read, settings);
-        // A person who reads the file finds names, and not numbers of variants.
+        // A person who reads the file finds names instead of variant numbers.
         assert!(text.contains("[settings.view]") && text.contains("mode = \"error\""), "{text}");
     }
 

@@ -1,8 +1,8 @@
 //! Techniques by name, and as TOML files.
 //!
-//! A file has a table for each group of the parameter table and a line for each parameter, so that `--set
-//! map.filter=pcf_3x3` on a command line is `filter = "pcf_3x3"` under `[map]` in a file. Parameters that a file leaves
-//! out are those of the recommended technique.
+//! A file has a table for each group of the parameter table and a line for each parameter. The option `--set
+//! map.filter=pcf_3x3` on a command line is `filter = "pcf_3x3"` under `[map]` in a file. A parameter that is
+//! missing in a file has the recommended technique's value.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -25,7 +25,7 @@ pub struct NamedTechnique {
     pub summary: String,
     /// The technique.
     pub technique: Technique,
-    /// What its fits are given.
+    /// Inputs of its fits.
     pub inputs: Inputs,
 }
 
@@ -36,14 +36,15 @@ impl Default for NamedTechnique {
 }
 
 impl From<Technique> for NamedTechnique {
-    /// A technique without a name.
+    /// Returns a technique without a name.
     fn from(technique: Technique) -> Self {
         Self { name: String::new(), summary: String::new(), technique, inputs: Inputs::default() }
     }
 }
 
 impl NamedTechnique {
-    /// The preset of a name, or the preset and input that a [name of both](NAMED_INPUTS) stands for.
+    /// Returns the preset with a name. The name may also be a [name for a preset with an
+    /// input](NAMED_INPUTS).
     pub fn preset(name: &str) -> Option<Self> {
         let named = NamedInputs::find(name);
         let preset = named.map_or(name, |named| named.preset);
@@ -55,23 +56,23 @@ impl NamedTechnique {
         Some(Self { name: name.to_owned(), summary, technique: preset.technique(), inputs })
     }
 
-    /// What it is, and what its fits are given, in a sentence.
+    /// Returns a sentence about the technique and the inputs of its fits.
     pub fn description(&self) -> String {
         format!("{}; {}", self.summary, self.inputs)
     }
 
-    /// This technique with maps of another width and height, in texels.
+    /// Returns this technique with maps of another width and height, in texels.
     #[must_use]
     pub fn with_resolution(mut self, texels: u32) -> Self {
         self.technique = self.technique.with_resolution(texels, texels);
         self
     }
 
-    /// The preset of a name, or the technique of a TOML file where the text ends in `.toml`.
+    /// Returns the preset with a name, or reads a technique from a TOML file if the text ends in `.toml`.
     ///
     /// # Errors
     ///
-    /// When there is no such preset, or the file cannot be read or makes no sense.
+    /// If there is no such preset, or the file cannot be read or is invalid.
     pub fn find(text: &str) -> Result<Self> {
         let file = Path::new(text);
         if file.extension().is_some_and(|extension| extension == "toml") {
@@ -84,18 +85,18 @@ impl NamedTechnique {
         })
     }
 
-    /// Reads a technique from a TOML file; one without a name gets the file's.
+    /// Reads a technique from a TOML file. A technique without a name is named after the file.
     ///
     /// # Errors
     ///
-    /// When it cannot be read or makes no sense; the message names file, group and parameter.
+    /// If the file cannot be read or is invalid. The message names file, group and parameter.
     pub fn read(file: &Path) -> Result<Self> {
         let at = || file.display().to_string();
         let text = std::fs::read_to_string(file).with_context(at)?;
         Ok(Self::from_toml(&text).with_context(at)?.or_named_after(file))
     }
 
-    /// The same with the name of its file, without the extension, if it has none of its own.
+    /// Returns the technique. If it has no name, it is named after its file, without the extension.
     #[must_use]
     pub fn or_named_after(mut self, file: &Path) -> Self {
         if self.name.is_empty() {
@@ -104,11 +105,12 @@ impl NamedTechnique {
         self
     }
 
-    /// The technique of a TOML text, as [`Self::to_toml`] writes it.
+    /// Parses a technique from TOML text, as written by [`Self::to_toml`].
     ///
     /// # Errors
     ///
-    /// When the text is not TOML, or has an unknown table or key, or a value that the parameter does not take.
+    /// If the text is not TOML, or has an unknown table or key, or a value that the parameter does not
+    /// accept.
     pub fn from_toml(text: &str) -> Result<Self> {
         let mut file: toml::Table = toml::from_str(text)?;
         let mut word = |key: &str| match file.remove(key) {
@@ -123,17 +125,17 @@ impl NamedTechnique {
         Ok(Self { name, summary, technique, inputs })
     }
 
-    /// The technique as TOML that [`Self::read`] reads.
+    /// Returns the technique as TOML for [`Self::read`].
     ///
     /// # Errors
     ///
-    /// When a number lies outside its parameter's range or is not finite, so that it could not be read back.
+    /// If a number lies outside its parameter's range or is not finite, so that it could not be read back.
     pub fn to_toml(&self) -> Result<String> {
         let Self { name, summary, technique, inputs } = self;
         let mut text = format!("name = {}\nsummary = {}\n", Value::from(name.as_str()), Value::from(summary.as_str()));
         let _ = writeln!(text, "\n{}", technique_to_toml(technique, *inputs, "").trim_end());
-        let read = Self::from_toml(&text).context("a number that no file can hold")?;
-        ensure!(read == *self, "a number that no file can hold");
+        let read = Self::from_toml(&text).context("a number that a file cannot hold")?;
+        ensure!(read == *self, "a number that a file cannot hold");
         Ok(text)
     }
 }
@@ -188,7 +190,7 @@ mod tests {
             format!("{:#}", NamedTechnique::find(&file.to_string_lossy()).expect_err(text))
         };
         for (text, reason) in [
-            ("map = 3", "map is no table"),
+            ("map = 3", "map is not a table"),
             ("name = 3", "name is 3"),
             ("[splits]\ncount = 9", "splits.count is 9, which is out of range; give a whole number from 1 to 8"),
             ("[splits]\ncount = -1", "splits.count"),

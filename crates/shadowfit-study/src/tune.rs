@@ -1,7 +1,7 @@
-//! The search for the technique with the least error in a scene, within a budget of maps and texels.
+//! Search for the technique with the smallest error in a scene, within a budget of maps and texels.
 //!
-//! One thing is changed at a time, in a fixed order, and kept when it helps: the same scene, path and GPU always give
-//! the same result, and the gain of each change is known.
+//! The search changes one thing at a time, in a fixed order, and keeps changes that help. The same scene,
+//! path and GPU always give the same result, and the gain of each change is known.
 
 mod changes;
 
@@ -15,38 +15,39 @@ use shadowfit_wgpu::ShadowMapError;
 use self::changes::{Change, maps, rounds};
 use crate::{Comparison, NamedTechnique, SharedTruth, View, ensure_judged};
 
-/// How much each error of a technique counts: weights of shares in per cent.
+/// Weights of a technique's errors, for shares in per cent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Weights {
     /// Weight of all wrong pixels.
     pub wrong: f64,
-    /// Weight of false shadow, on top: acne is seen at once.
+    /// Additional weight of false shadow, because acne is conspicuous.
     pub false_shadow: f64,
-    /// Weight of false light, on top.
+    /// Additional weight of false light.
     pub false_light: f64,
-    /// Weight of holes, on top.
+    /// Additional weight of holes.
     pub hole: f64,
-    /// Weight of the mean difference between the filtered factor and the truth.
-    pub mean_error: f64,
+    /// Weight of the error of the sunlight ([`light_error`](shadowfit_truth::PictureFigures::light_error)). It shows
+    /// surfaces that a bias darkens by less than half, which are not wrong.
+    pub light_error: f64,
     /// Weight of edge pixels that change from frame to frame.
     pub crawl: f64,
 }
 
 impl Default for Weights {
     fn default() -> Self {
-        Self { wrong: 1.0, false_shadow: 10.0, false_light: 2.0, hole: 10.0, mean_error: 0.0, crawl: 0.01 }
+        Self { wrong: 1.0, false_shadow: 10.0, false_light: 2.0, hole: 10.0, light_error: 0.25, crawl: 0.01 }
     }
 }
 
 impl Weights {
-    /// The weighted error of a tally; infinite where nothing was judged.
+    /// Returns the weighted error of a tally. Infinite if no pixel was judged.
     pub fn error(&self, tally: &PictureTally) -> f64 {
         let Some(figures) = tally.figures() else { return f64::INFINITY };
         self.wrong * figures.wrong
             + self.false_shadow * figures.false_shadow
             + self.false_light * figures.false_light
             + self.hole * figures.hole
-            + self.mean_error * figures.mean_error
+            + self.light_error * figures.light_error
             + self.crawl * figures.crawl.unwrap_or(0.0)
     }
 }
@@ -54,69 +55,70 @@ impl Weights {
 /// The budget of a search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Budget {
-    /// Most maps.
+    /// Greatest number of maps.
     pub maps: u32,
-    /// Width and height of each, in texels.
+    /// Width and height of each map, in texels.
     pub resolution: u32,
 }
 
-/// What a search may change.
+/// Parts of a technique that a search may change.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum TuneScope {
-    /// Everything except the size of the maps; their number may only fall.
+    /// Everything except the size of the maps. The number of maps may only fall.
     #[default]
     Everything,
-    /// Bias and filter alone: the maps and their fit stay as they are. A [soft](shadowfit::settings::FilterKind::is_soft)
-    /// filter stays too, since the truth has a hard sun.
+    /// Only bias and filter: the maps and their fit stay the same. A
+    /// [soft](shadowfit::settings::FilterKind::is_soft) filter also stays, because the truth has a hard sun.
     BiasAndFilter,
 }
 
 /// Start, scope and weights of a search.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TuneSettings {
-    /// The technique that it begins with, whose number and size of maps are the budget. Default: the recommended one.
+    /// Technique to start with. Its number and size of maps are the budget. Default: the recommended
+    /// technique.
     pub start: Technique,
-    /// What its fits are given. Default: [`Inputs::default`].
+    /// Inputs of its fits. Default: [`Inputs::default`].
     pub inputs: Inputs,
-    /// What it may change. Default: everything.
+    /// Parts that may change. Default: everything.
     pub scope: TuneScope,
-    /// How much each error counts. Default: [`Weights::default`].
+    /// Weights of the errors. Default: [`Weights::default`].
     pub weights: Weights,
 }
 
 impl TuneSettings {
-    /// A search for the best technique of a budget, which begins with the recommended one.
+    /// Returns a search for the best technique within a budget, starting with the recommended technique.
     pub fn within(budget: Budget) -> Self {
         let start = Technique::default().with_count(budget.maps);
         Self { start: start.with_resolution(budget.resolution, budget.resolution), ..Self::default() }
     }
 }
 
-/// Progress of a search, after each technique that it has tried.
+/// Progress of a search, reported after each technique.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Progress {
-    /// Techniques tried, the first one included.
+    /// Number of techniques tried, including the first one.
     pub tried: usize,
-    /// Most that will be tried.
+    /// Greatest number of techniques that will be tried.
     pub at_most: usize,
-    /// Least weighted error so far.
+    /// Smallest weighted error so far.
     pub best_error: f64,
-    /// That of the technique that the search began with.
+    /// Weighted error of the technique that the search started with.
     pub start_error: f64,
-    /// What was changed last.
+    /// Description of the last change.
     pub what: String,
 }
 
 /// A change that was tried.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Step {
-    /// What was changed.
+    /// Description of the change.
     pub what: String,
-    /// Weighted error with it.
+    /// Weighted error with the change.
     pub error: f64,
-    /// Sums over all frames with it.
+    /// Sums over all frames with the change.
     pub tally: PictureTally,
-    /// Whether it was kept.
+    /// Whether the change was kept.
     pub is_kept: bool,
 }
 
@@ -127,13 +129,13 @@ pub struct Tuned {
     pub technique: NamedTechnique,
     /// Its sums over all frames.
     pub tally: PictureTally,
-    /// All that was tried, in order; the first is the start.
+    /// All changes that were tried, in order. The first step is the start.
     pub steps: Vec<Step>,
     /// Whether the search was stopped before its end.
     pub stopped_early: bool,
 }
 
-/// A search under way.
+/// A running search.
 struct Search<'a> {
     comparison: &'a mut Comparison,
     views: &'a [View],
@@ -144,13 +146,13 @@ struct Search<'a> {
     tried: Vec<Technique>,
     steps: Vec<Step>,
     best: Technique,
-    /// What all of them are given.
+    /// Inputs of all fits.
     inputs: Inputs,
-    /// Place of the best one in the steps.
+    /// Index of the best technique in the steps.
     best_step: usize,
 }
 
-/// Searches. `progress` is called after each technique that was tried, and stops the search when it answers `false`.
+/// Searches for the best technique. Calls `progress` after each technique, and stops if it returns `false`.
 ///
 /// It can run on another thread, with a comparison that has another [`Gpu`](shadowfit_render::Gpu):
 ///
@@ -162,7 +164,7 @@ struct Search<'a> {
 /// let settings = TuneSettings { start: present, scope: TuneScope::BiasAndFilter, ..TuneSettings::default() };
 /// let (sender, progress) = channel();
 /// std::thread::spawn(move || {
-///     // Whoever no longer listens stops the search.
+///     // If the receiver was dropped, the search stops.
 ///     let tuned = tune(&mut comparison, &views, &settings, &mut |progress| sender.send(progress.clone()).is_ok());
 ///     // ...
 /// #   drop(tuned);
@@ -171,11 +173,11 @@ struct Search<'a> {
 /// # }
 /// ```
 ///
-/// A change that the fit or the shadow map refuses is skipped.
+/// Changes that the fit or the shadow map refuses are skipped.
 ///
 /// # Errors
 ///
-/// When there are no views, one cannot be drawn, or none shows a surface that faces the light.
+/// If there are no views, one cannot be drawn, or none shows a surface that faces the light.
 pub fn tune(
     comparison: &mut Comparison,
     views: &[View],
@@ -185,7 +187,7 @@ pub fn tune(
     pollster::block_on(tune_async(comparison, views, settings, progress))
 }
 
-/// The same, and lets a browser do other things while the GPU draws.
+/// Searches like [`tune`]. A browser can do other work while the GPU draws.
 ///
 /// # Errors
 ///
@@ -214,7 +216,7 @@ pub async fn tune_async(
     search.steps[0].is_kept = true;
     let mut goes_on = progress(&search.progress("the start"));
     for changes in rounds {
-        // The best of each round is kept.
+        // Keeps the best change of each round.
         let from = search.best;
         for change in changes {
             if goes_on && search.try_change(&from, &change).await? {
@@ -228,7 +230,7 @@ pub async fn tune_async(
 }
 
 impl Search<'_> {
-    /// Tries a change, and returns whether it changed anything.
+    /// Tries a change, and returns whether it changed the technique.
     async fn try_change(&mut self, from: &Technique, change: &Change) -> Result<bool> {
         let mut candidate = *from;
         (change.apply)(&mut candidate);
@@ -242,7 +244,7 @@ impl Search<'_> {
         Ok(true)
     }
 
-    /// Measures a technique, which becomes the best one if its error is less.
+    /// Measures a technique, which becomes the best one if its error is smaller.
     async fn measure(&mut self, technique: &Technique, what: &str) -> Result<()> {
         self.tried.push(*technique);
         let tally = self.sums(technique).await?;
@@ -255,7 +257,7 @@ impl Search<'_> {
         Ok(())
     }
 
-    /// Sums over all frames.
+    /// Returns the sums over all frames.
     async fn sums(&mut self, technique: &Technique) -> Result<PictureTally> {
         self.comparison.clear();
         self.comparison.add(NamedTechnique { inputs: self.inputs, ..(*technique).into() })?;
@@ -289,7 +291,7 @@ impl Search<'_> {
     }
 }
 
-/// Whether the technique was refused, in contrast to a failure of the machine.
+/// Returns whether the technique was refused, as opposed to a failure of the machine.
 fn is_refusal(error: &Error) -> bool {
     error.is::<FitError>()
         || error.is::<ShadowMapError>()
@@ -324,18 +326,19 @@ mod tests {
         let tally = PictureTally {
             frames: 1,
             all,
-            error: 5.0,
+            light: 50.0,
+            light_error: 5.0,
             crawl_compared: 50,
             crawl_different: 4,
             ..PictureTally::default()
         };
-        let none = Weights { wrong: 0.0, false_shadow: 0.0, false_light: 0.0, hole: 0.0, mean_error: 0.0, crawl: 0.0 };
+        let none = Weights { wrong: 0.0, false_shadow: 0.0, false_light: 0.0, hole: 0.0, light_error: 0.0, crawl: 0.0 };
         for (weights, error) in [
             (Weights { wrong: 1.0, ..none }, 15.0),
             (Weights { false_shadow: 2.0, ..none }, 10.0),
             (Weights { false_light: 3.0, ..none }, 6.0),
             (Weights { hole: 1.0, ..none }, 3.0),
-            (Weights { mean_error: 4.0, ..none }, 10.0),
+            (Weights { light_error: 2.0, ..none }, 20.0),
             (Weights { crawl: 0.5, ..none }, 4.0),
             (Weights { wrong: 1.0, hole: 2.0, crawl: 1.0, ..none }, 29.0),
         ] {
@@ -343,7 +346,7 @@ mod tests {
         }
     }
 
-    /// A floor and a slanted board over it.
+    /// Returns a floor and a slanted board over it.
     fn scene() -> Scene {
         let at = |x: f32, y: f32, z: f32| Vec3::new(x, y, z);
         let quad = |[a, b, c, d]: [Vec3; 4]| vec![[a, b, c], [a, c, d]];
@@ -375,7 +378,7 @@ mod tests {
         Comparison::new(renderer_gpu(), scene(), judging).expect("a scene")
     }
 
-    /// Coarse maps without a bias, which have acne.
+    /// Returns coarse maps without a bias, which have acne.
     fn bad() -> Technique {
         let none =
             BiasSettings { constant: 0.0, slope: 0.0, normal_offset: 0.0, receiver_plane: 0.0, depth_steps: 0.0 };

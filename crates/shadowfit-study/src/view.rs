@@ -1,4 +1,4 @@
-//! A camera and a light: with the scene they make a picture.
+//! A camera and a light, which make a picture of a scene.
 
 use glam::Vec3;
 use shadowfit::Camera;
@@ -10,6 +10,6 @@ pub struct View {
     pub camera: Camera,
     /// Unit direction of travel of the light, world axes.
     pub direction: Vec3,
-    /// Whether a path begins here: nothing is kept from the view before, and crawl is not measured.
+    /// Whether a path starts here: no state is kept from the previous view, and crawl is not measured.
     pub is_first: bool,
 }

@@ -1,5 +1,5 @@
-//! Files that are written whole or not at all: a process that is killed, a full disk and a power cut leave the old file
-//! or the new one.
+//! Files that are written completely or not at all. After a killed process, a full disk or a power cut, the
+//! old or the new file exists.
 //!
 //! ```text
 //! .viewer.toml.k3Zx9Q.part   written, and sent to the disk
@@ -7,8 +7,8 @@
 //! viewer.toml                replaced
 //! ```
 //!
-//! Whoever is killed in between leaves the first one behind. The next writer of the same file removes it, once it is so
-//! old that nobody can still be writing it.
+//! If the process is killed in between, the first file is left behind. The next writer of the same file
+//! removes it, once it is too old to be in use.
 
 use std::fs::{self, File, Permissions};
 use std::io::{self, ErrorKind, Write as _};
@@ -18,45 +18,45 @@ use std::time::{Duration, SystemTime};
 use anyhow::{Result, anyhow};
 use tempfile::{Builder, NamedTempFile};
 
-/// How the names of unfinished files end.
+/// Suffix of unfinished files.
 const UNFINISHED: &str = ".part";
-/// Age from which on an unfinished file is one that was left behind: writing takes seconds at most.
+/// Age from which on an unfinished file counts as left behind. Writing takes seconds at most.
 const LEFT_BEHIND: Duration = Duration::from_mins(1);
-/// Bytes of a name that its unfinished file has too: names may be 255 bytes long.
+/// Bytes of a name that are reused in its unfinished file's name. Names may be 255 bytes long.
 const LONGEST: usize = 200;
-/// Links that are followed at most, as on Linux.
+/// Greatest number of links that are followed, as on Linux.
 const MOST_LINKS: usize = 40;
 
-/// Writes a file whole or not at all. Where `path` is a link, the file that it leads to is written; a file that is
-/// replaced keeps its permissions. What is no file, such as a pipe, gets the bytes as they come.
+/// Writes a file completely or not at all. If `path` is a link, its target is written. A replaced file keeps
+/// its permissions. Special files, such as pipes, are written to directly.
 ///
 /// # Errors
 ///
-/// When it cannot be written; the message has the path, the reason and what to do. The old file stays.
+/// If it cannot be written. The message has the path, the reason and advice. The old file stays.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
     replace(&followed(path), bytes).map_err(|error| refusal(path, "cannot be written", &error))
 }
 
-/// Makes a folder where it is not there yet, and checks that files can be made in it: before work that takes long.
+/// Creates a folder if it is missing, and checks that files can be created in it. Call it before long work.
 ///
 /// # Errors
 ///
-/// When it cannot be made or written to; the message has the path, the reason and what to do.
+/// If it cannot be created or written to. The message has the path, the reason and advice.
 pub fn make_folder(folder: &Path) -> Result<()> {
     let made = fs::create_dir_all(folder).map_err(|error| match error.kind() {
         ErrorKind::AlreadyExists => ErrorKind::NotADirectory.into(),
         _ => error,
     });
-    made.map_err(|error| refusal(folder, "the folder cannot be made", &error))?;
+    made.map_err(|error| refusal(folder, "the folder cannot be created", &error))?;
     let probe = tempfile::tempfile_in(folder_of(&folder.join("file")));
     probe.map(drop).map_err(|error| refusal(folder, "the folder cannot be written to", &error))
 }
 
-/// Checks that a file can be written, as far as that can be known: before work that takes long.
+/// Checks, as far as possible, that a file can be written. Call it before long work.
 ///
 /// # Errors
 ///
-/// When there is a folder of that name, or the folder of the file is missing or cannot be written to.
+/// If a folder has that name, or the folder of the file is missing or cannot be written to.
 pub fn check_place(file: &Path) -> Result<()> {
     let path = followed(file);
     let checked = match special(&path) {
@@ -74,19 +74,19 @@ fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let mut file = unfinished(path)?;
     file.write_all(bytes)?;
     if let Ok(old) = fs::metadata(path) {
-        // Some file systems have none.
+        // Some file systems have no permissions.
         let _ = file.as_file().set_permissions(old.permissions());
     }
     file.as_file().sync_all()?;
     file.persist(path).map_err(|error| error.error)?;
-    // The content is safe by now. Some file systems cannot do this for folders.
+    // The content is safe by now. Some file systems cannot sync folders.
     #[cfg(unix)]
     let _ = File::open(folder_of(path)).and_then(|folder| folder.sync_all());
     remove_left_behind(path);
     Ok(())
 }
 
-/// Whether something that is no file is there, and must be written to instead of replaced.
+/// Returns whether the path is a special file, which must be written to instead of replaced.
 fn special(path: &Path) -> io::Result<bool> {
     match fs::metadata(path) {
         Ok(there) if there.is_dir() => Err(ErrorKind::IsADirectory.into()),
@@ -96,18 +96,18 @@ fn special(path: &Path) -> io::Result<bool> {
     }
 }
 
-/// A new file beside a path; removed unless it is renamed.
+/// Creates a new file beside a path. It is removed unless it is renamed.
 fn unfinished(path: &Path) -> io::Result<NamedTempFile> {
     let mut builder = Builder::new();
     let prefix = prefix(path);
     builder.prefix(&prefix).suffix(UNFINISHED);
-    // As any new file, less what the user's mask takes away.
+    // Permissions of any new file, which the user's umask then reduces.
     #[cfg(unix)]
     builder.permissions(<Permissions as std::os::unix::fs::PermissionsExt>::from_mode(0o666));
     builder.tempfile_in(folder_of(path))
 }
 
-/// Removes unfinished files of a path that were left behind. Those that cannot be removed do no harm.
+/// Removes unfinished files of a path that were left behind. Ignores failures, which do no harm.
 fn remove_left_behind(path: &Path) {
     let prefix = prefix(path);
     for entry in fs::read_dir(folder_of(path)).into_iter().flatten().flatten() {
@@ -122,18 +122,18 @@ fn remove_left_behind(path: &Path) {
     }
 }
 
-/// How the names of the unfinished files of a path begin.
+/// Returns the prefix of a path's unfinished files.
 fn prefix(path: &Path) -> String {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     format!(".{}.", &name[..name.floor_char_boundary(LONGEST)])
 }
 
-/// The folder that a file is in; the working folder for a bare name.
+/// Returns the folder of a file; the working folder for a bare name.
 fn folder_of(path: &Path) -> &Path {
     path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
-/// Where a path leads if it is a link, also to a file that is not there yet.
+/// Follows links. The target may be missing.
 fn followed(path: &Path) -> PathBuf {
     let mut path = path.to_owned();
     for _ in 0..MOST_LINKS {
@@ -143,15 +143,15 @@ fn followed(path: &Path) -> PathBuf {
     path
 }
 
-/// The message for people: in words of our own, since those of the system name the unfinished file.
+/// Returns the message for people. The system's message would name the unfinished file.
 fn refusal(path: &Path, what: &str, error: &io::Error) -> anyhow::Error {
     let reason = match error.kind() {
         ErrorKind::StorageFull | ErrorKind::QuotaExceeded => "the disk is full; make room, or choose another folder",
         ErrorKind::PermissionDenied => "permission is denied; choose a folder that you may write to",
         ErrorKind::ReadOnlyFilesystem => "the disk is read-only; choose a folder on another one",
-        ErrorKind::NotFound => "its folder is not there; make it first, or choose another one",
-        ErrorKind::NotADirectory => "part of the path is a file and no folder; choose another path",
-        ErrorKind::IsADirectory => "a folder of this name is there; move it, or choose another name",
+        ErrorKind::NotFound => "its folder does not exist; create it first, or choose another one",
+        ErrorKind::NotADirectory => "part of the path is a file, not a folder; choose another path",
+        ErrorKind::IsADirectory => "a folder of this name exists; move it, or choose another name",
         _ => return anyhow!("{}: {what}: {error}; choose another place", path.display()),
     };
     anyhow!("{}: {what}: {reason}", path.display())
@@ -217,8 +217,8 @@ mod tests {
         fs::create_dir(at("folder")).expect("a folder");
         fs::write(at("file"), "text").expect("a file");
         for (name, reason) in [
-            ("folder", "a folder of this name is there"),
-            ("missing/file", "its folder is not there"),
+            ("folder", "a folder of this name exists"),
+            ("missing/file", "its folder does not exist"),
             ("file/below", "part of the path is a file"),
         ] {
             let message = refused(&at(name));

@@ -1,8 +1,8 @@
-//! Why a pixel is lit or dark, and right or wrong: the texel that it reads, the depths that are compared, and the
-//! reason in words.
+//! Explains why a pixel is lit or dark, and right or wrong: the texel that it reads, the compared depths, and
+//! the reason in words.
 //!
-//! The class is that of the judge; the reasons follow from a few more rays. `map_reason` says which map is read and
-//! why, `look_up` how it is looked up, and `reason` the rest.
+//! The class is the judge's. A few more rays find the reasons. `map_reason` explains the choice of the map,
+//! `look_up` computes the look-up, and `reason` does the rest.
 
 mod look_up;
 mod map_reason;
@@ -22,45 +22,46 @@ use self::look_up::{LookUp, Tap};
 use crate::maps::{measured, picture_maps};
 use crate::{Judging, SceneRays, View};
 
-/// A pixel to ask about, and all that its shadow follows from. It owns or shares what it has, so that a thread can answer.
+/// A pixel to explain, and everything that its shadow depends on. It owns or shares its data, so that a
+/// thread can use it.
 #[derive(Clone, Debug)]
 pub struct WhyInput {
-    /// The scene, whose nodes give things their names.
+    /// The scene. Its nodes name the objects.
     pub scene: Arc<Scene>,
-    /// Its rays, in the pose that is seen.
+    /// The scene's rays for the visible pose.
     pub rays: Arc<SceneRays>,
     /// Camera and light of the picture.
     pub view: View,
-    /// Size of the picture in pixels, and how it is judged.
+    /// Size of the picture in pixels, and settings for judging it.
     pub judging: Judging,
-    /// The pixel, from the left and from the top of the picture, in pixels; fractions are dropped.
+    /// The pixel, from the left and from the top of the picture, in pixels. Fractions are dropped.
     pub pixel: [f32; 2],
-    /// The technique that made the maps.
+    /// The technique that fitted the maps.
     pub technique: Technique,
     /// The maps that the picture was drawn with.
     pub maps: Vec<FittedMap>,
-    /// What they were drawn into.
+    /// The shadow map that they were drawn into.
     pub descriptor: ShadowMapDescriptor,
-    /// Share of the light at the pixel as it was drawn, 0..=1, such as a probe gives it; `None` takes what one comparison
-    /// with the point's own texel gives.
+    /// Share of the light at the pixel as it was drawn, 0..=1, for example from a probe. `None` uses one
+    /// comparison with the texel of the point.
     pub factor: Option<f32>,
-    /// The depths that the map stores around the look-up, if they were read back; otherwise rays find them.
+    /// Depths that the map stores around the look-up, if they were read back. Otherwise rays find them.
     pub stored: Option<StoredTexels>,
 }
 
 /// Texels of a map that were read back.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StoredTexels {
-    /// The middle one, from the left and from the top of the map: whole texels of [`Why::texel`]. A map that
-    /// [is stored shifted](FittedMap::texel_offset) has it elsewhere in its layer.
+    /// The middle texel, from the left and from the top of the map: [`Why::texel`] rounded down. If a map [is
+    /// stored shifted](FittedMap::texel_offset), it lies elsewhere in the layer.
     pub texel: [u32; 2],
-    /// Its depth and those of the eight around it, rows from the top, as the map stores them: 0..=1, plain or reversed.
-    /// Not a number beyond the map.
+    /// Depths of the middle texel and the eight texels around it, rows from the top, as stored: 0..=1, plain
+    /// or reversed. NaN beyond the map.
     pub depths: [[f32; 3]; 3],
 }
 
 impl StoredTexels {
-    /// The depth of a texel, if it is among these.
+    /// Returns the depth of a texel, if it was read back.
     fn depth(&self, texel: DVec2) -> Option<f32> {
         let [x, y] = [0, 1].map(|axis| texel[axis] - f64::from(self.texel[axis]) + 1.0);
         let is_here = (0.0..3.0).contains(&x) && (0.0..3.0).contains(&y);
@@ -68,7 +69,7 @@ impl StoredTexels {
     }
 }
 
-/// Why a pixel is lit or dark, and right or wrong.
+/// Explanation why a pixel is lit or dark, and right or wrong.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Why {
     /// The visible point; world space, metres.
@@ -77,46 +78,46 @@ pub struct Why {
     pub normal: Vec3,
     /// Distance from the eye, in metres.
     pub distance: f32,
-    /// Index of the map that is read; where two are blended, the one that weighs more; `None` where no map holds the
-    /// point.
+    /// Index of the map that is read, or of the one with the greater weight if two are blended. `None` if no
+    /// map holds the point.
     pub map: Option<usize>,
-    /// Where it is looked up in that map, with the bias's offset, in texels from the left and from the top. `None` without
-    /// a map, and on a surface that is turned away from the light.
+    /// Position of the look-up in that map, with the bias's offset, in texels from the left and from the top.
+    /// `None` without a map, and on a surface that faces away from the light.
     pub texel: Option<[f32; 2]>,
-    /// Depth that is compared, with the bias, as the map stores depths: 0..=1, plain or reversed.
+    /// Compared depth, with the bias, as the map stores depths: 0..=1, plain or reversed.
     pub compared: Option<f32>,
-    /// The same in metres from the map's near plane along the light; less than 0 before it.
+    /// Compared depth in metres from the map's near plane along the light; negative before it.
     pub compared_metres: Option<f32>,
-    /// Depth that the map stores at that texel, read back or found by rays; the depth of a cleared map where it stores
-    /// nothing.
+    /// Depth that the map stores at that texel, read back or found by rays. If the texel is empty, the depth
+    /// of a cleared map.
     pub stored: Option<f32>,
-    /// The same in metres from the map's near plane along the light; `None` where it stores nothing.
+    /// Stored depth in metres from the map's near plane along the light. `None` if the texel is empty.
     pub stored_metres: Option<f32>,
-    /// Screen pixels per shadow texel along the worse axis; `None` without a map, and where the surface is edge-on to the
-    /// light.
+    /// Screen pixels per shadow texel along the worse axis. `None` without a map, and if the surface is
+    /// edge-on to the light.
     pub pixels_per_texel: Option<f32>,
-    /// How the pixel compares with the truth. The judge of pictures says the same, except for edge zones wider than
-    /// those of [`PixelTruth::judge`].
+    /// Class of the pixel. It equals the class in a judged picture, unless the edge zone is wider than the
+    /// limit of [`PixelTruth::judge`].
     pub class: Class,
-    /// Whether the light reaches it in truth.
+    /// Whether the light reaches the pixel in truth.
     pub is_lit: bool,
-    /// The share of the light that it was judged by, 0..=1: the one that was given, or that of one comparison. `None`
-    /// on a surface that is not judged, if none was given.
+    /// Share of the light that was judged, 0..=1: [`WhyInput::factor`], or the result of one comparison.
+    /// `None` on a surface that is not judged, if no factor was given.
     pub factor: Option<f32>,
-    /// Which map is read, and why that one: "map 2 of 4: the finest that holds this point; map 1 ends 3.1 m to the left of
-    /// it".
+    /// The map that is read, and the reason: "map 2 of 4: the finest that holds this point; map 1 ends 3.1 m
+    /// to the left of it".
     pub map_reason: String,
-    /// Why it is lit or dark, and right or wrong: "lit by mistake: its occluder, "roof", stands 3.2 m before the near plane
+    /// Why it is lit or dark, and right or wrong: "wrongly lit: its occluder, "roof", is 3.2 m before the near plane
     /// of map 2".
     pub reason: String,
 }
 
-/// Everything that is known about a pixel. Positions are relative to the origin of the rays, in metres.
+/// All data about a pixel. Positions are relative to the origin of the rays, in metres.
 pub(crate) struct At<'a> {
     input: &'a WhyInput,
     truth: PixelTruth<'a>,
     maps: &'a PictureMaps<'a>,
-    /// The pixel's index in the rows from the top.
+    /// The pixel's index in rows from the top.
     pixel: usize,
     point: TruthPoint,
     read: Option<MapRead>,
@@ -125,10 +126,11 @@ pub(crate) struct At<'a> {
     finding: PixelFinding,
 }
 
-/// Says why a pixel is lit or dark, and right or wrong; `None` for the sky and beyond the picture.
+/// Explains why a pixel is lit or dark, and right or wrong. `None` for the sky and beyond the picture.
 ///
-/// It casts a few dozen rays, as many as the filter reads texels, and at a wrong pixel up to a hundred thousand more to
-/// look for the shadow's true edge: from microseconds to some tens of milliseconds.
+/// It casts a few dozen rays, plus one per texel that the filter reads. At a wrong pixel it casts up to a
+/// hundred thousand more to find the shadow's true edge. It takes between microseconds and some tens of
+/// milliseconds.
 ///
 /// ```no_run
 /// # use shadowfit::{FittedMap, Technique};
@@ -176,19 +178,20 @@ pub fn why(input: &WhyInput) -> Option<Why> {
     Some(At { input, truth, maps: &picture, pixel, point, read, look_up, factor, finding }.why())
 }
 
-/// Share of the light that one comparison gives.
+/// Returns the share of the light from one comparison.
 fn lit(tap: &Tap) -> f32 {
     if tap.is_dark() { 0.0 } else { 1.0 }
 }
 
-/// A pixel's index in the rows from the top, if it is in the picture.
+/// Returns a pixel's index in rows from the top, if it is in the picture.
 fn pixel_index(pixel: [f32; 2], [width, height]: [u32; 2]) -> Option<usize> {
     let is_inside = (0.0..width as f32).contains(&pixel[0]) && (0.0..height as f32).contains(&pixel[1]);
     is_inside.then(|| pixel[1] as usize * width as usize + pixel[0] as usize)
 }
 
 impl At<'_> {
-    /// The occluder between the point and the sun, seen from the point itself and not from the start of its ray.
+    /// Returns the occluders between the point and the sun, seen from the point itself instead of the start
+    /// of its ray.
     fn occluders(&self) -> Vec<Occluder> {
         let mut occluders = self.truth.occluders(self.pixel, &self.point);
         for occluder in &mut occluders {
@@ -196,7 +199,7 @@ impl At<'_> {
             let normal = self.truth.tracer.normal(occluder.triangle).as_dvec3();
             let corner = self.truth.tracer.corners(occluder.triangle)[0].as_dvec3();
             let distance = normal.dot(corner - self.point.position) / normal.dot(direction);
-            // A plane along the ray has no such point.
+            // A plane along the ray has no intersection.
             if distance.is_finite() {
                 (occluder.position, occluder.distance) = (self.point.position + direction * distance, distance);
             }

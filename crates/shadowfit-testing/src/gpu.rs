@@ -1,4 +1,4 @@
-//! The device that tests draw with.
+//! The device for tests that draw.
 
 use std::sync::{LazyLock, Mutex, PoisonError};
 
@@ -15,11 +15,11 @@ pub struct TestGpu {
     pub queue: wgpu::Queue,
 }
 
-/// A device, or a value that holds one, that one test has to itself. It goes back to a list when the test's thread ends: keep
-/// it in a thread-local variable.
+/// A device, or a value that holds one, for exclusive use by one test. It returns to a list when the test's
+/// thread ends, so keep it in a thread-local variable.
 ///
-/// Two tests must not share a device at the same time: wgpu may run a callback in the thread of another test that polls the
-/// device. The first test then finds its work done before its callback has run.
+/// Two tests must not share a device at the same time: wgpu may run a callback in the thread of another test
+/// that polls the device. The first test would then find its work finished before its callback has run.
 #[derive(Debug)]
 pub struct Lent<T: Clone + 'static> {
     gpu: T,
@@ -45,8 +45,8 @@ impl<T: Clone> Drop for Lent<T> {
     }
 }
 
-/// Returns the choice of the environment variable [`ADAPTER_VARIABLE`]. Without it tests draw on the software adapter even beside a
-/// GPU, because its pictures are nearly the same on every machine.
+/// Returns the adapter that the environment variable [`ADAPTER_VARIABLE`] selects. Without it, tests draw on
+/// the software adapter even if there is a GPU, because its pictures are nearly the same on every machine.
 pub fn adapter_choice() -> &'static AdapterChoice {
     static CHOICE: LazyLock<AdapterChoice> =
         LazyLock::new(|| AdapterChoice::from_env().unwrap_or(AdapterChoice::Software));
@@ -59,27 +59,28 @@ pub fn adapter_name() -> &'static str {
     &NAME
 }
 
-/// Returns the step, in pixels, to which an adapter rounds the corners of triangles. Vulkan guarantees 1/16, and graphics APIs
-/// tell tests no more. Drivers use 1/256, except `SwiftShader`.
+/// Returns the step, in pixels, to which an adapter rounds the corners of triangles. Vulkan guarantees 1/16,
+/// and graphics APIs do not report the actual value. Drivers use 1/256, except `SwiftShader`.
 pub fn subpixel_step(info: &wgpu::AdapterInfo) -> f32 {
     if info.name.contains("SwiftShader") { 1.0 / 16.0 } else { 1.0 / 256.0 }
 }
 
-/// Returns the step, in texels, to which an adapter rounds the position that a linear filter takes its weights from. Vulkan
-/// guarantees 1/16. Drivers use 1/256, except `SwiftShader`: its positions have 16 bits, which leaves 1/128 in a texture of 512
-/// texels.
+/// Returns the step, in texels, to which an adapter rounds the position for the weights of a linear filter.
+/// Vulkan guarantees 1/16. Drivers use 1/256, except `SwiftShader`: its positions have 16 bits, which is
+/// 1/128 texel for a texture of 512 texels.
 pub fn filter_step(info: &wgpu::AdapterInfo) -> f32 {
     if info.name.contains("SwiftShader") { 1.0 / 128.0 } else { 1.0 / 256.0 }
 }
 
-/// Returns the tests' device with depth clamp and the default limits of WebGPU, or the limits of an adapter that has less.
-/// Tests that run after each other in a process use the same device: a test that loses the device, measures its memory or
-/// replaces its error handler opens its own with [`open_test_gpu`]. Call it in the test's own thread.
+/// Returns the tests' device with depth clamp and the default limits of WebGPU, or the adapter's own limits
+/// if they are lower. Successive tests of a process share the device. A test that loses the device, measures
+/// its memory or replaces its error handler must open its own with [`open_test_gpu`]. Call this in the test's
+/// own thread.
 ///
 /// # Panics
 ///
-/// If the machine lacks the adapter of [`ADAPTER_VARIABLE`]. `cargo xtask test` leaves out the tests that draw on machines without
-/// any adapter.
+/// If the machine lacks the adapter of [`ADAPTER_VARIABLE`]. `cargo xtask test` skips tests that draw on
+/// machines without any adapter.
 pub fn test_gpu() -> TestGpu {
     static FREE: Mutex<Vec<TestGpu>> = Mutex::new(Vec::new());
     std::thread_local! {
@@ -89,8 +90,8 @@ pub fn test_gpu() -> TestGpu {
     LENT.with(Lent::get)
 }
 
-/// Opens the tests' adapter again, with these features, if the adapter has them, and these limits, or lower ones of the
-/// adapter.
+/// Opens the tests' adapter again, with the requested features that it has, and with these limits or its own
+/// lower ones.
 ///
 /// # Panics
 ///
@@ -110,8 +111,8 @@ pub fn open_test_gpu(features: wgpu::Features, required_limits: wgpu::Limits) ->
     TestGpu { adapter, device, queue }
 }
 
-/// Returns the tests' device as the renderer opens it, lent to one test after another like [`test_gpu`]. A test that must
-/// not share it calls [`open_renderer_gpu`].
+/// Returns the tests' device as the renderer opens it. Successive tests share it, as with [`test_gpu`]. A
+/// test that needs its own calls [`open_renderer_gpu`].
 ///
 /// # Panics
 ///
@@ -135,8 +136,8 @@ pub fn open_renderer_gpu() -> shadowfit_render::Gpu {
     opened(adapter_choice())
 }
 
-/// Returns the software adapter as the renderer opens it, for golden pictures. They are the same on every machine,
-/// whatever [`ADAPTER_VARIABLE`] says.
+/// Returns the software adapter as the renderer opens it, for golden pictures. It ignores
+/// [`ADAPTER_VARIABLE`], since golden pictures must be the same on every machine.
 ///
 /// # Panics
 ///

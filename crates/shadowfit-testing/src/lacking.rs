@@ -1,10 +1,10 @@
-//! Tests that a device refuses.
+//! Tests that cannot run on a device.
 
 use crate::subpixel_step;
 
-/// Ends the running test, because the adapter lacks something that the test needs: a feature that every WebGPU device has, but
-/// OpenGL does not, or the precision of GPUs. The runner of a bundle counts such tests as refused, by the first word of the
-/// message.
+/// Ends the running test, because the adapter lacks a requirement of the test: a feature that WebGPU
+/// guarantees but OpenGL does not, or the precision of GPUs. The runner of a bundle counts such tests as
+/// refused, by the first word of the message.
 ///
 /// # Panics
 ///
@@ -13,8 +13,8 @@ pub fn lacking(info: &wgpu::AdapterInfo, what: &str) -> ! {
     panic!("LACKING: {} lacks {what}", shadowfit_adapter::label(info))
 }
 
-/// Ends the running test if its edges or counts need corners that are rounded to 1/256 pixel, as GPUs do, and the adapter
-/// [rounds](subpixel_step) more coarsely.
+/// Ends the running test if the adapter [rounds](subpixel_step) corners more coarsely than to 1/256 pixel.
+/// For tests whose edges or pixel counts depend on it.
 ///
 /// # Panics
 ///
@@ -25,9 +25,9 @@ pub fn require_fine_steps(info: &wgpu::AdapterInfo) {
     }
 }
 
-/// Ends the running test if it draws triangles of tens of kilometres, and the adapter lacks the precision for them. `SwiftShader`
-/// leaves out the two triangles of a ground of 100 km, so that the picture shows the sky there, and moves the end of a shadow on
-/// a ground of 30 km by metres.
+/// Ends the running test if the adapter lacks the precision for triangles of tens of kilometres.
+/// `SwiftShader` drops the two triangles of a ground of 100 km, so that the sky shows there, and misplaces
+/// the end of a shadow on a ground of 30 km by metres.
 ///
 /// # Panics
 ///

@@ -1,4 +1,5 @@
-//! Rust structs against naga's reflection of the WGSL that reads them: size, and every field's offset by its name.
+//! Compares the layout of Rust structs (size and offsets of all fields by name) with naga's reflection of the
+//! WGSL.
 
 use naga::{Binding, Module, StructMember, TypeInner};
 
@@ -13,7 +14,7 @@ pub struct Layout {
     pub fields: Vec<(&'static str, usize)>,
 }
 
-/// The [`Layout`](crate::layout::Layout) of a struct. The compiler refuses a list that lacks a field.
+/// Returns the [`Layout`](crate::layout::Layout) of a struct. A list that lacks a field does not compile.
 #[macro_export]
 macro_rules! layout {
     ($wgsl:literal = $rust:ident { $($field:ident),+ $(,)? }) => {{
@@ -35,12 +36,12 @@ macro_rules! layout {
 pub fn reflected<'a>(module: &'a Module, name: &str) -> (&'a [StructMember], u32) {
     let found = module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some(name));
     let Some((_, ty)) = found else { panic!("no type `{name}`") };
-    let TypeInner::Struct { members, span } = &ty.inner else { panic!("`{name}` is no struct") };
+    let TypeInner::Struct { members, span } = &ty.inner else { panic!("`{name}` is not a struct") };
     (members, *span)
 }
 
-/// Compares a struct with the reflection of a module that reads it. Padding at the end of the Rust struct may be bytes that
-/// WGSL leaves free there without a name.
+/// Compares a struct with the reflection of a module that reads it. The Rust struct may end with padding
+/// fields that are unnamed in WGSL.
 ///
 /// # Panics
 ///
@@ -56,7 +57,7 @@ pub fn assert_same(module: &Module, layout: &Layout) {
     assert!(unnamed.iter().all(|(name, _)| name.starts_with("padding")), "{wgsl} lacks {unnamed:?}");
 }
 
-/// Returns the members of a vertex shader's input that come from vertex buffers at the given locations, in that order.
+/// Returns the members of a vertex shader's input at the given locations of vertex buffers, in that order.
 ///
 /// # Panics
 ///
@@ -70,7 +71,7 @@ pub fn at_locations<'a>(module: &'a Module, input: &str, locations: &[u32]) -> V
     locations.iter().map(|location| at(*location)).collect()
 }
 
-/// Returns the offsets of packed attributes, and where the last one ends, in bytes.
+/// Returns the offsets of packed attributes and the end of the last one, in bytes.
 pub fn packed(module: &Module, members: &[&StructMember]) -> Vec<usize> {
     let mut offsets = vec![0];
     for member in members {

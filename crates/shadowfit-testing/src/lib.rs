@@ -1,8 +1,9 @@
 //! Code that the tests of several crates share.
 //!
-//! Opening a device takes longer than many tests that draw. [`test_gpu`] therefore lends a device to one test after
-//! another, and `cargo xtask test` runs the tests that draw in one process per test binary.
+//! Opening a device takes longer than many tests that draw. Therefore [`test_gpu`] shares one device among
+//! successive tests, and `cargo xtask test` runs the tests that draw in one process per test binary.
 
+pub mod commands;
 mod folder;
 mod gpu;
 mod lacking;

@@ -1,7 +1,7 @@
-//! Few combinations of options that hold every pair of values.
+//! Short lists of option combinations that contain every pair of values.
 //!
-//! Most faults that depend on options show with the values of two of them: a list that holds every pair finds these with a
-//! fraction of the full product (Cohen, Dalal, Fredman, Patton, "The AETG system", 1997).
+//! Most faults that depend on options need only two particular values. A list with every pair finds these
+//! faults with a fraction of the full product (Cohen, Dalal, Fredman, Patton, "The AETG system", 1997).
 
 /// Values of two columns that occur in a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -10,8 +10,8 @@ struct Pair {
     values: [usize; 2],
 }
 
-/// Returns rows with one value per column, such that every pair of values of two columns occurs in a row. `counts` is the
-/// number of values of each column. The rows are the same in every run.
+/// Returns rows with one value per column, so that every pair of values of two columns occurs in a row.
+/// `counts` is the number of values of each column. The rows are the same in every run.
 ///
 /// # Panics
 ///
@@ -58,8 +58,8 @@ fn pairs_of(counts: &[usize]) -> Vec<Pair> {
     pairs
 }
 
-/// Returns the value of a column that brings the most missing pairs with the values that a row has. Ties go to another value
-/// in each row, so that values which bring nothing are still spread evenly.
+/// Returns the value of a column that adds the most missing pairs with the values already in the row. Ties
+/// are broken differently in each row, so that values without a gain are also spread evenly.
 fn best_value(row: &[Option<usize>], column: usize, count: usize, missing: &[Pair], turn: usize) -> usize {
     let gain = |value: usize| {
         let is_chosen = |of: usize, wanted: usize| if of == column { wanted == value } else { row[of] == Some(wanted) };
@@ -93,7 +93,7 @@ mod tests {
             let mut sorted = counts.to_vec();
             sorted.sort_unstable();
             let [.., a, b] = sorted[..] else { panic!("two columns") };
-            // No list is shorter than the product of the two longest columns.
+            // A list cannot be shorter than the product of the two longest columns.
             assert!(rows.len() >= a * b && rows.len() <= 2 * a * b + 3, "{counts:?}: {} rows", rows.len());
         }
     }

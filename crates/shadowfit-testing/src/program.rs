@@ -1,4 +1,4 @@
-//! Promises that every program keeps.
+//! Tests that apply to all programs.
 
 use std::process::Command;
 
@@ -6,15 +6,15 @@ use shadowfit_adapter::ADAPTER_VARIABLE;
 
 use crate::test_gpu;
 
-/// The exit code of every refusal.
+/// Exit code after refused input.
 const REFUSED: i32 = 2;
 
-/// Asserts that a program refuses a graphics adapter that the machine lacks, named by an option or by the environment:
-/// with exit code 2, a list of the adapters that are there, and no output before that.
+/// Asserts that a program refuses a graphics adapter that the machine lacks, named by an option or by the
+/// environment. It must end with exit code 2 and a list of the available adapters, before any other output.
 ///
 /// # Panics
 ///
-/// If it does not.
+/// If the program behaves otherwise.
 pub fn refuses_missing_adapter(program: impl Fn() -> Command) {
     let present = test_gpu().adapter.get_info().name;
     let (mut by_option, mut by_variable) = (program(), program());

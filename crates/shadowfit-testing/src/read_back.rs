@@ -1,9 +1,9 @@
-//! Textures read back as values.
+//! Read-back of textures.
 
 use bytemuck::Pod;
 use shadowfit_gpu::TexelCopy;
 
-/// Waits for the bytes of all layers of a texture, row by row, without the padding that copies need.
+/// Waits for the bytes of all layers of a texture. Returns them row by row, without the padding of copies.
 ///
 /// # Panics
 ///
@@ -18,7 +18,8 @@ pub fn bytes(device: &wgpu::Device, queue: &wgpu::Queue, texture: &wgpu::Texture
     copy.texels().expect("texels are mapped")
 }
 
-/// Waits for the texels of all layers of a texture, row by row, as values of the size of a texel.
+/// Waits for the texels of all layers of a texture. Returns them row by row, as values of the size of a
+/// texel.
 ///
 /// # Panics
 ///

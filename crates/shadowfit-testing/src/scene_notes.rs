@@ -1,6 +1,6 @@
-//! A scene whose import has something to note.
+//! A scene with notes of its import.
 
-/// A glTF file of two triangles, with lines that are skipped and an image that is missing.
+/// A glTF file of two triangles, with lines that are skipped and a missing image.
 pub const SCENE_WITH_NOTES: &str = r#"{
     "asset": { "version": "2.0" }, "nodes": [{ "mesh": 0 }],
     "meshes": [{ "primitives": [
@@ -13,6 +13,6 @@ pub const SCENE_WITH_NOTES: &str = r#"{
     "buffers": [{ "byteLength": 12, "uri": "data:;base64,AAAAAAAJCQAACQAJ" }]
 }"#;
 
-/// How the notes of [`SCENE_WITH_NOTES`] begin.
+/// Beginnings of the notes of [`SCENE_WITH_NOTES`].
 pub const NOTES: [&str; 2] =
     ["images[0]: replaced by a placeholder: ", "meshes[0].primitives[1]: lines skipped: only triangles are drawn"];

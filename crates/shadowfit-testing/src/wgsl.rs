@@ -10,7 +10,7 @@ use naga::proc::BoundsCheckPolicies;
 use naga::valid::{Capabilities, FunctionInfo, ModuleInfo, ValidationFlags, Validator};
 use naga::{AddressSpace, EntryPoint, Expression, Function, Handle, Module, ScalarKind, ShaderStage, TypeInner};
 
-/// Parses a module. `name` is for the message of a failure.
+/// Parses a module. Failure messages contain `name`.
 ///
 /// # Panics
 ///
@@ -19,7 +19,7 @@ pub fn parse(name: &str, source: &str) -> Module {
     naga::front::wgsl::parse_str(source).unwrap_or_else(|error| panic!("{name}: {}", error.emit_to_string(source)))
 }
 
-/// A parsed module, with its name for messages. Tests that look at many modules parse each of them once.
+/// A parsed module, with its name for messages. Tests that use a module several times parse it only once.
 #[derive(Debug)]
 pub struct Shader {
     /// Name for messages.
@@ -42,7 +42,7 @@ impl Shader {
         Self { name, source, module }
     }
 
-    /// Validates the module, which needs no more than these capabilities.
+    /// Validates the module and asserts that it needs only these capabilities.
     ///
     /// # Panics
     ///
@@ -52,7 +52,7 @@ impl Shader {
         validated.unwrap_or_else(|error| panic!("{}: {}", self.name, error.emit_to_string(&self.source)))
     }
 
-    /// Asserts that the module has an entry point of each of these stages.
+    /// Asserts that the module has an entry point for each of these stages.
     ///
     /// # Panics
     ///
@@ -64,8 +64,8 @@ impl Shader {
         }
     }
 
-    /// Asserts that WebGL2 can draw with the module: naga translates its entry points, and its uniform blocks are whole
-    /// vectors.
+    /// Asserts that WebGL2 can draw with the module: naga can translate its entry points, and the sizes of
+    /// its uniform blocks are multiples of a vector.
     ///
     /// # Panics
     ///
@@ -87,12 +87,12 @@ impl Shader {
     ///
     /// # Errors
     ///
-    /// The error of the first entry point that naga cannot translate.
+    /// Returns the error of the first entry point that naga cannot translate.
     pub fn translate_to_webgl2(&self, info: &ModuleInfo) -> Result<(), String> {
         self.module.entry_points.iter().try_for_each(|entry| translated(&self.module, info, entry))
     }
 
-    /// Returns the names of the structs that the uniforms of the module have.
+    /// Returns the names of the structs of the module's uniforms.
     ///
     /// # Panics
     ///
@@ -107,7 +107,7 @@ impl Shader {
     }
 }
 
-/// Validates a module that needs no more than these capabilities, and returns it parsed.
+/// Validates a module that needs only these capabilities, and returns it parsed.
 ///
 /// # Panics
 ///
@@ -127,7 +127,8 @@ pub fn assert_translates_to_webgl2(name: &str, source: &str) {
     Shader::new(name, source).assert_translates_to_webgl2();
 }
 
-/// The shading language of WebGL2 for an entry point, with the defaults of the module's constants.
+/// Translates an entry point into the shading language of WebGL2, with the defaults of the module's
+/// constants.
 fn translated(module: &Module, info: &ModuleInfo, entry: &EntryPoint) -> Result<(), String> {
     let constants = PipelineConstants::default();
     let (module, info) = process_overrides(module, info, Some((entry.stage, &entry.name)), &constants)
@@ -143,8 +144,8 @@ fn translated(module: &Module, info: &ModuleInfo, entry: &EntryPoint) -> Result<
         .map(|_| ())
 }
 
-/// Whether a function selects among integers by several conditions at once. The shading language of WebGL2 cannot, and naga
-/// translates it all the same.
+/// Returns whether a function selects among integers by several conditions at once. The shading language of
+/// WebGL2 cannot do this, but naga translates it without an error.
 fn mixes_integers(module: &Module, function: &Function, info: &FunctionInfo) -> bool {
     function.expressions.iter().any(|(_, expression)| {
         let Expression::Select { condition, accept, .. } = *expression else { return false };
@@ -154,7 +155,7 @@ fn mixes_integers(module: &Module, function: &Function, info: &FunctionInfo) -> 
     })
 }
 
-/// Returns the names of the structs that the uniforms of a module have, as [`Shader::uniform_structs`].
+/// Returns the names of the structs of a module's uniforms, as [`Shader::uniform_structs`].
 ///
 /// # Panics
 ///

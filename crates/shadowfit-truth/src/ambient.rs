@@ -1,7 +1,7 @@
-//! Ray-traced ambient occlusion: the reference for what screen-space ambient occlusion guesses.
+//! Ray-traced ambient occlusion, the reference for screen-space ambient occlusion.
 //!
-//! From each visible point, rays go into the hemisphere over its surface. What they meet nearby hides that much of the
-//! ambient light, the less the farther away it is.
+//! From each visible point, rays are cast into the hemisphere above its surface. A ray that hits a triangle
+//! nearby hides its share of the ambient light: all of it at the point, less with distance.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -11,14 +11,14 @@ use crate::seen::seen_point;
 use crate::spiral;
 use crate::tracer::Tracer;
 
-/// How ambient occlusion is traced.
+/// Settings of the ambient occlusion rays.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AmbientSettings {
-    /// Rays of a pixel; 0 counts as 1. Default: 32.
+    /// Rays per pixel; 0 counts as 1. Default: 32.
     pub rays: u32,
-    /// Distance from which on nothing is hidden, in metres: occlusion falls linearly to 0 there. Default: 1.
+    /// Distance at which occlusion has fallen linearly to 0, in metres. Default: 1.
     pub distance: f64,
-    /// Rays start this far along the geometric normal, in metres. Default: 0.001.
+    /// Offset of each ray's start along the geometric normal, in metres. Default: 0.001.
     pub ray_offset: f64,
 }
 
@@ -33,18 +33,20 @@ impl Default for AmbientSettings {
 pub struct AmbientTruth {
     /// Camera of the picture.
     pub camera: PixelCamera,
-    /// How it was traced.
+    /// Settings that were used for tracing.
     pub settings: AmbientSettings,
-    /// Share of the ambient light that is hidden at each pixel, 0..=1, rows from the top; `None` for the sky, and for a
-    /// triangle without area, which has no normal.
+    /// Share of the ambient light that is hidden at each pixel, 0..=1, rows from the top. `None` for the sky,
+    /// and for a triangle without area, which has no normal.
     pub occlusion: Vec<Option<f32>>,
 }
 
 impl AmbientTruth {
-    /// Traces the ambient occlusion of a picture: the mean, over rays that are spread evenly by the cosine to the
-    /// geometric normal on the side of the eye, of 1 - d / [`AmbientSettings::distance`] for a ray that meets a triangle
-    /// at a distance d below that, and of 0 for one that does not. The rays are the same each time, and turned from
-    /// pixel to pixel. Cut-outs and the alpha test hold for these rays too.
+    /// Traces the ambient occlusion of a picture.
+    ///
+    /// The rays are cosine-weighted around the geometric normal on the eye's side. A ray that hits a triangle
+    /// at distance d below [`AmbientSettings::distance`] contributes 1 - d / distance, any other ray 0; the
+    /// result is their mean. The ray pattern is deterministic and rotated from pixel to pixel. Rays respect
+    /// cut-outs and the alpha test.
     ///
     /// `seen` is the triangle (index into the tracer's) that is drawn at each pixel, as for
     /// [`Truth::trace`](crate::Truth::trace).
@@ -67,15 +69,15 @@ impl AmbientTruth {
         Self { camera: *camera, settings: *settings, occlusion }
     }
 
-    /// Mean over the pixels that have a truth of how far a picture's occlusion is from it, 0..=1; `None` where no pixel
-    /// has one. `occlusion` is the share of the ambient light that the picture hides at each pixel, rows from the top;
-    /// one out of 0..=1 is clamped, and one that is not a number is wrong by 1.
+    /// Returns a picture's mean absolute error, 0..=1, over the pixels that have a truth. `None` if no pixel
+    /// has one. `occlusion` is the share of the ambient light that the picture hides at each pixel, rows from
+    /// the top. Values outside 0..=1 are clamped. NaN counts as an error of 1.
     ///
     /// # Panics
     ///
     /// If `occlusion` does not have one element for each pixel.
     pub fn mean_absolute_error(&self, occlusion: &[f32]) -> Option<f64> {
-        assert_eq!(occlusion.len(), self.occlusion.len(), "as many values as pixels");
+        assert_eq!(occlusion.len(), self.occlusion.len(), "one value for each pixel");
         let both = self.occlusion.iter().zip(occlusion).filter_map(|(truth, picture)| Some(((*truth)?, *picture)));
         let error = |(truth, picture): (f32, f32)| {
             if picture.is_nan() { 1.0 } else { f64::from((picture.clamp(0.0, 1.0) - truth).abs()) }
@@ -85,7 +87,7 @@ impl AmbientTruth {
     }
 }
 
-/// Share of the ambient light that is hidden from a point.
+/// Returns the share of the ambient light that is hidden from a point.
 fn hidden_share(tracer: &Tracer, settings: &AmbientSettings, pixel: usize, origin: DVec3, normal: DVec3) -> f32 {
     let hidden = |direction: DVec3| {
         let (start, along) = (origin.as_vec3(), direction.as_vec3());
@@ -97,12 +99,12 @@ fn hidden_share(tracer: &Tracer, settings: &AmbientSettings, pixel: usize, origi
     (directions(normal, rays, spiral::turn_of(pixel)).map(hidden).sum::<f64>() / f64::from(rays)) as f32
 }
 
-/// Unit directions over a surface whose density is that of the cosine to its normal, of a spiral that is turned by
-/// `turn` radians.
+/// Returns cosine-weighted unit directions around `normal`, from a spiral that is turned by `turn` radians.
 fn directions(normal: DVec3, rays: u32, turn: f64) -> impl Iterator<Item = DVec3> {
     let (first, second) = normal.any_orthonormal_pair();
     (0..rays).map(move |ray| {
-        // Even on the disc below the hemisphere is by the cosine on the hemisphere (Malley's method).
+        // A uniform distribution on the disc, projected up, is cosine-weighted on the hemisphere (Malley's
+        // method).
         let area = (f64::from(ray) + 0.5) / f64::from(rays);
         let (sin, cos) = spiral::sin_cos(ray, turn);
         normal * (1.0 - area).sqrt() + (first * cos + second * sin) * area.sqrt()
@@ -119,10 +121,11 @@ mod tests {
         let of = |turn| directions(normal, 1000, turn).collect::<Vec<_>>();
         let spread = of(0.7);
         assert!(spread.iter().all(|d| d.is_normalized() && d.dot(normal) > 0.0));
-        // With the density cos/π the mean cosine is the integral of 2 cos² sin = 2/3, and none to the side.
+        // With the density cos/π the mean cosine is the integral of 2 cos² sin = 2/3. The sideways components
+        // cancel.
         let mean = spread.iter().sum::<DVec3>() / 1000.0;
         assert!(mean.abs_diff_eq(normal * (2.0 / 3.0), 2e-3), "{mean}");
-        // The share within an angle is sin² of it: half of them within 45 degrees.
+        // The share within an angle is its sin²: half of the rays lie within 45 degrees.
         let half = spread.iter().filter(|d| d.dot(normal) > 0.5f64.sqrt()).count();
         assert!(half.abs_diff(500) <= 1, "{half}");
         assert_eq!(of(0.7), spread);

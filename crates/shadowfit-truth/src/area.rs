@@ -1,6 +1,8 @@
-//! How much light reaches the area of a pixel, and not only its centre: the truth of pictures with smooth edges.
+//! The light that reaches the whole area of a pixel, not only its centre: the truth for pictures with smooth
+//! edges.
 //!
-//! Each of some points of the pixel sees what lies there, and a ray leaves from it toward the light.
+//! Each pixel is sampled at several points. From the surface seen at each point, a ray is cast toward the
+//! light.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -9,16 +11,17 @@ use crate::camera::PixelCamera;
 use crate::tracer::Tracer;
 use crate::truth::{Truth, TruthSettings, is_blocked};
 
-/// Sums of |factor − share of the pixel's area that is lit| over the pixels that count.
+/// Sums of |factor − share of the pixel's area that is lit| over the counted pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct AreaTally {
-    /// Pixels whose points all lie on one surface: nearly on the plane of their centre, which faces nearly the same way.
+    /// Pixels with one surface: all sample points lie near the plane of the pixel's centre and face nearly
+    /// the same way.
     pub single: u64,
-    /// Sum over those.
+    /// Sum of the errors of these pixels.
     pub single_error: f64,
     /// Pixels that show several surfaces.
     pub several: u64,
-    /// Sum over those.
+    /// Sum of the errors of these pixels.
     pub several_error: f64,
 }
 
@@ -31,27 +34,30 @@ impl AreaTally {
         self.several_error += other.several_error;
     }
 
-    /// Mean error in per cent of full light: of pixels with one surface, and of those with several. `None` without any.
+    /// Returns the mean error in per cent of full light, for pixels with one surface and with several. `None`
+    /// without pixels.
     pub fn errors(&self) -> [Option<f64>; 2] {
         let mean = |error: f64, pixels: u64| (pixels > 0).then(|| 100.0 * error / pixels as f64);
         [mean(self.single_error, self.single), mean(self.several_error, self.several)]
     }
 }
 
-/// Least cosine between the normals of points of one surface: 11°.
+/// Smallest cosine between the normals of two points that count as one surface: 11°.
 const SAME_SURFACE: f64 = 0.98;
 
-/// Shuffles the rays of a pixel: a prime near the golden section of 256, that of 16 × 16 points.
+/// Multiplier that shuffles the rays of a pixel: a prime near the golden section of 256, the count of 16 × 16
+/// points.
 const SHUFFLE: u32 = 157;
 
-/// What the area of a pixel shows.
+/// Light and surfaces within the area of a pixel.
 struct Area {
     lit: f64,
     is_single: bool,
 }
 
-/// Compares a picture's factors with the area of each pixel that counts, by `side` × `side` points, each with a ray toward
-/// a point of its own of the sun where that has a radius. `counted` and `factors` are those of the picture, in rows from the top.
+/// Compares a picture's factors with the lit share of each counted pixel's area, sampled at `side` × `side`
+/// points. Each point casts one ray. If the sun has a radius, each ray aims at a different point of the sun.
+/// `counted` and `factors` have one element per pixel, rows from the top.
 pub fn area(tracer: &Tracer, truth: &Truth, counted: &[bool], factors: &[f32], side: u32) -> AreaTally {
     let of_pixel = |pixel: usize| {
         let point = truth.points[pixel].filter(|_| counted[pixel])?;
@@ -65,7 +71,7 @@ pub fn area(tracer: &Tracer, truth: &Truth, counted: &[bool], factors: &[f32], s
         })
     };
     let found: Vec<AreaTally> = (0..factors.len()).into_par_iter().filter_map(of_pixel).collect();
-    // In the order of the pixels, so that sums are the same each time.
+    // Merges in pixel order, so that the sums are deterministic.
     found.iter().fold(AreaTally::default(), |mut all, one| {
         all.merge(one);
         all
@@ -74,12 +80,12 @@ pub fn area(tracer: &Tracer, truth: &Truth, counted: &[bool], factors: &[f32], s
 
 /// The plane of the surface at the centre of a pixel.
 struct Plane {
-    /// A point of it, world space, metres.
+    /// Point on the plane, world space, metres.
     point: DVec3,
     normal: DVec3,
 }
 
-/// Computes the lit share of a pixel from `side` × `side` points; `None` where the points see nothing.
+/// Computes the lit share of a pixel from `side` × `side` points; `None` if all of them show the sky.
 fn seen(
     tracer: &Tracer,
     camera: &PixelCamera,
@@ -108,7 +114,7 @@ fn seen(
             (position - centre.point).dot(centre.normal).abs() <= width && facing.dot(centre.normal) >= SAME_SURFACE;
         points += 1;
         let is_facing = facing.dot(settings.light.ray_from(position).direction) > 0.0;
-        // Neighbouring points of the pixel have points of the sun that are no neighbours.
+        // Neighbouring points of the pixel aim at points of the sun that are not neighbours.
         let number = (index * SHUFFLE % rays.count()) as usize;
         let origin = position + facing * settings.ray_offset;
         let is_lit =

@@ -1,7 +1,7 @@
 //! A camera and the rays through the centres of its pixels.
 //!
-//! Everything is f64 and in world space, so that a visible point is as exact as its triangle. The
-//! measures of pictures and those of fits both find here how large a pixel is on a surface.
+//! All values are f64 in world space, so that a visible point is as exact as its triangle. Judged pictures
+//! and measured fits use the same size of a pixel on a surface, computed here.
 
 use glam::{DVec2, DVec3};
 use shadowfit::Camera;
@@ -17,10 +17,10 @@ pub struct PixelCamera {
     pub up: DVec3,
     /// Unit direction of view.
     pub forward: DVec3,
-    /// Half of the picture's width and height, in metres: at a view depth of 1 m, or at any view depth where the lens
-    /// [is orthographic](Self::is_orthographic).
+    /// Half of the picture's width and height, in metres, at a view depth of 1 m. If the lens [is
+    /// orthographic](Self::is_orthographic), it is the same at every view depth.
     pub half_size: DVec2,
-    /// Whether all rays are parallel, and begin beside the eye instead of in it.
+    /// Whether all rays are parallel and start beside the eye instead of at it.
     pub is_orthographic: bool,
     /// Pixels across and down the picture.
     pub size: [u32; 2],
@@ -31,8 +31,8 @@ pub struct PixelCamera {
 }
 
 impl PixelCamera {
-    /// The pixels of a camera whose picture has `size` pixels across and down; they need not be square.
-    /// A camera that [`Camera::frustum`] refuses gives axes that are not numbers, and pictures in which no pixel is judged.
+    /// Creates the pixel camera of a picture of `size` pixels across and down. Pixels need not be square. If
+    /// [`Camera::frustum`] would refuse the camera, the axes are NaN and no pixel of the picture is judged.
     pub fn new(camera: impl Into<Camera>, size: [u32; 2]) -> Self {
         let camera: Camera = camera.into();
         let forward = camera.forward.as_dvec3().normalize();
@@ -50,19 +50,20 @@ impl PixelCamera {
         }
     }
 
-    /// Number of pixels.
+    /// Returns the number of pixels.
     pub fn pixels(&self) -> usize {
         self.size[0] as usize * self.size[1] as usize
     }
 
-    /// The ray through the centre of a pixel, counted from the left and from the top.
+    /// Returns the ray through the centre of a pixel, counted from the left and from the top.
     pub fn ray(&self, x: u32, y: u32) -> PixelRay {
         let across = (2.0 * (f64::from(x) + 0.5) / f64::from(self.size[0]) - 1.0) * self.half_size.x;
         let upward = (1.0 - 2.0 * (f64::from(y) + 0.5) / f64::from(self.size[1])) * self.half_size.y;
         self.ray_beside(self.right * across + self.up * upward)
     }
 
-    /// The ray that passes `aside` of the middle of the picture: in metres, at a view depth of 1 m for a perspective.
+    /// Returns the ray at an offset from the picture's centre, in metres; for a perspective, at a view depth
+    /// of 1 m.
     fn ray_beside(&self, aside: DVec3) -> PixelRay {
         if self.is_orthographic {
             PixelRay { origin: self.eye + aside, direction: self.forward }
@@ -71,7 +72,7 @@ impl PixelCamera {
         }
     }
 
-    /// A ray of the same picture, moved by `aside`: in metres, at a view depth of 1 m for a perspective.
+    /// Returns `ray` moved by `aside`, in metres; for a perspective, at a view depth of 1 m.
     pub(crate) fn moved(&self, ray: &PixelRay, aside: DVec3) -> PixelRay {
         let PixelRay { origin, direction } = *ray;
         if self.is_orthographic {
@@ -81,31 +82,32 @@ impl PixelCamera {
         }
     }
 
-    /// The same for a pixel by its index in the rows from the top.
+    /// Returns the ray through the centre of a pixel, given by its index in rows from the top.
     pub fn ray_of(&self, index: usize) -> PixelRay {
         let width = self.size[0].max(1) as usize;
         self.ray((index % width) as u32, (index / width) as u32)
     }
 
-    /// How far a ray moves for one pixel to the right, and for one down, world axes, metres: at a view depth of 1 m for a
-    /// perspective.
+    /// Returns how far a ray moves for one pixel to the right and one down, world axes, metres; for a
+    /// perspective, at a view depth of 1 m.
     pub(crate) fn pixel_axes(&self) -> [DVec3; 2] {
         let [across, down] = [0, 1].map(|axis| 2.0 * self.half_size[axis] / f64::from(self.size[axis]));
         [self.right * across, -self.up * down]
     }
 
-    /// View depth of a point of the world, in metres.
+    /// Returns the view depth of a world point, in metres.
     pub fn view_depth(&self, point: DVec3) -> f64 {
         (point - self.eye).dot(self.forward)
     }
 
-    /// How far a point moves on its tangent plane for one pixel to the right, and for one down, world
-    /// space, metres. `ray` is that of its pixel, `normal` a normal of the plane, toward either side.
+    /// Returns how far a point moves on its tangent plane for one pixel to the right and one down, world
+    /// space, metres. `ray` is the pixel's ray. `normal` is the plane's normal, on either side.
     pub fn pixel_steps(&self, ray: &PixelRay, normal: DVec3, view_depth: f64) -> [DVec3; 2] {
         self.pixel_axes().map(|step| slide(step, ray.direction, normal, self.spread(view_depth)))
     }
 
-    /// How many times as far apart two rays are at a view depth, in metres, as the picture's measures say.
+    /// Returns the distance of two rays at a view depth, in metres, relative to their distance in the
+    /// picture's own units.
     pub(crate) const fn spread(&self, view_depth: f64) -> f64 {
         if self.is_orthographic { 1.0 } else { view_depth }
     }
@@ -114,20 +116,21 @@ impl PixelCamera {
 /// The line of sight of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PixelRay {
-    /// Where its view depth is 0, in metres.
+    /// Point where the view depth is 0, world space, metres.
     pub origin: DVec3,
-    /// Its component along the view is 1, so that the distance along it is view depth.
+    /// Direction whose component along the view is 1, so that the distance along it is view depth.
     pub direction: DVec3,
 }
 
 impl PixelRay {
-    /// The point at a view depth, in metres.
+    /// Returns the point at a view depth, in metres.
     pub fn at(&self, view_depth: f64) -> DVec3 {
         self.origin + self.direction * view_depth
     }
 }
 
-/// How far the point where a ray meets a plane moves on it when the ray is moved there by `across` times `spread`.
+/// Returns how far a ray's intersection with a plane moves when the ray is moved there by `across` times
+/// `spread`.
 pub fn slide(across: DVec3, ray: DVec3, normal: DVec3, spread: f64) -> DVec3 {
     (across - ray * (across.dot(normal) / ray.dot(normal))) * spread
 }
@@ -185,7 +188,8 @@ mod tests {
             };
             let (point, ray, depth) = met(12, 15);
             let [right, down] = camera.pixel_steps(&ray, normal, depth);
-            // The step is the derivative: the neighbour differs by the second order, a pixel's share.
+            // The step is a derivative. The neighbour differs from it by a second-order term, a fraction of a
+            // pixel.
             for (step, neighbour) in [(right, met(13, 15).0), (down, met(12, 16).0)] {
                 assert!((point + step - neighbour).length() < 0.1 * step.length(), "{step} {}", neighbour - point);
                 assert!(step.dot(normal).abs() < 1e-12);

@@ -1,7 +1,7 @@
 //! Crawl: how many pixels at shadow edges change their verdict only because the maps moved.
 //!
-//! The same points of the world are looked up in the maps of this frame and in those of the frame
-//! before, so that neither the camera's motion nor true changes of the shadow are counted.
+//! The same world points are looked up in the maps of this frame and of the previous frame. Camera motion and
+//! true changes of the shadow are therefore not counted.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -12,32 +12,32 @@ use crate::maps::PictureMaps;
 use crate::tally::Crawl;
 use crate::truth::Truth;
 
-/// The maps of the frame before, and what they show at the points of this frame.
+/// The maps of the previous frame, and their factors at the points of this frame.
 #[derive(Clone, Copy, Debug)]
 pub struct MapsBefore<'a> {
-    /// Its maps, and how they were read.
+    /// The previous frame's maps, and how they were read.
     pub maps: PictureMaps<'a>,
-    /// Its eye, world space, metres.
+    /// The previous frame's eye, world space, metres.
     pub eye: DVec3,
-    /// Its unit direction of view, world axes: view depths along it choose among maps that are read by
-    /// view depth.
+    /// The previous frame's unit view direction, world axes. Selection by view depth uses view depths along
+    /// it.
     pub forward: DVec3,
-    /// Share of the light that its maps let through at the points of this frame's pixels, 0..=1,
-    /// rows from the top.
+    /// Share of the light that the previous frame's maps let through at the points of this frame's pixels,
+    /// 0..=1, rows from the top.
     pub factors: &'a [f32],
 }
 
-/// Compares the verdicts of two frames' maps at the pixels that count, lie in the edge zone, and whose point the maps
-/// of both frames cover; and the factors of those that lie elsewhere, too.
+/// Compares the maps of two frames at the counted pixels whose point the maps of both frames cover. It
+/// compares factors at all of them, and verdicts in the edge zone.
 ///
-/// `factors` is what [`judge()`](crate::judge()) was given, `before` the frame before.
+/// `factors` are the factors that [`judge()`](crate::judge()) was called with.
 ///
 /// # Panics
 ///
 /// If either list of factors does not have one element for each pixel.
 pub fn crawl(truth: &Truth, judged: &Judged, factors: &[f32], before: &MapsBefore) -> Crawl {
-    assert_eq!(factors.len(), truth.points.len(), "as many factors as pixels");
-    assert_eq!(before.factors.len(), truth.points.len(), "as many factors of the frame before as pixels");
+    assert_eq!(factors.len(), truth.points.len(), "one factor for each pixel");
+    assert_eq!(before.factors.len(), truth.points.len(), "one factor of the previous frame for each pixel");
     let is_compared = |pixel: usize| {
         let is_here = judged.counted[pixel] && judged.map_index[pixel].is_some();
         is_here

@@ -1,7 +1,7 @@
-//! Triangles with holes, as plain data: the CPU and the GPU evaluate them alike.
+//! Triangles with holes, as plain data that the CPU and the GPU evaluate alike.
 //!
-//! A triangle is opaque where base alpha × vertex alpha × image alpha reaches a cutoff; elsewhere it is
-//! a hole. The image is sampled at its finest level, by bilinear interpolation or at the nearest texel.
+//! A triangle is opaque where base alpha × vertex alpha × image alpha reaches a cutoff. Elsewhere it is a
+//! hole. The image is sampled at its finest mip level, bilinearly or at the nearest texel.
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -9,8 +9,8 @@ use std::sync::Arc;
 use glam::{Vec2, Vec3};
 pub use shadowfit_rays::{CutMaterial, Wrap};
 
-/// Texel coordinates are clamped to ± this before they are wrapped: whole numbers of this size and
-/// their neighbours fit i32, and f32 has no fractions there.
+/// Limit of texel coordinates, which are clamped to ± this value before they are wrapped. Whole numbers of
+/// this size and their neighbours fit into i32, and f32 has no fractions there.
 pub(crate) const MAX_TEXEL: f32 = 1_073_741_824.0;
 
 /// The alpha of an image, at least one texel. Clones share it.
@@ -22,19 +22,19 @@ pub struct AlphaImage {
 }
 
 impl AlphaImage {
-    /// An image from its alpha in rows from the top, 255 opaque. `None` when `alpha` is empty or does
-    /// not have `width * height` elements, or when a side is longer than 2^24 texels.
+    /// Creates an image from its alpha in rows from the top, 255 opaque. `None` if `alpha` is empty or does
+    /// not have `width * height` elements, or if a side is longer than 2^24 texels.
     pub fn new(width: u32, height: u32, alpha: Vec<u8>) -> Option<Self> {
         shadowfit_rays::AlphaImage::new(width, height, &alpha).ok()?;
         Some(Self { width, height, alpha: alpha.into() })
     }
 
-    /// Width and height, in texels.
+    /// Returns width and height, in texels.
     pub fn size(&self) -> [u32; 2] {
         [self.width, self.height]
     }
 
-    /// Alpha in rows from the top, 255 opaque.
+    /// Returns the alpha in rows from the top, 255 opaque.
     pub fn alpha(&self) -> &[u8] {
         &self.alpha
     }
@@ -44,22 +44,22 @@ impl AlphaImage {
     }
 }
 
-/// A triangle with holes, whose image is an index in [`CutOuts::images`]. Without an image, or with an index beyond them, the
-/// image's alpha is 1.
+/// A triangle with holes. Its image is an index into [`CutOuts::images`]. If the image is missing or the
+/// index is out of range, the image's alpha counts as 1.
 pub type CutOut = shadowfit_rays::CutOut<u32>;
 
 /// The triangles with holes of a scene, and their images.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CutOuts {
-    /// Index in `all` by triangle.
+    /// Index into `all` by triangle.
     indices: HashMap<u32, u32>,
     all: Vec<CutOut>,
     images: Vec<AlphaImage>,
 }
 
 impl CutOuts {
-    /// `cut_outs` has the tracer's index of a triangle with each cut-out; the last one given for a
-    /// triangle counts.
+    /// Collects cut-outs, each with the tracer's index of its triangle. If a triangle occurs several times,
+    /// the last cut-out counts.
     pub fn new(images: Vec<AlphaImage>, cut_outs: impl IntoIterator<Item = (u32, CutOut)>) -> Self {
         let mut made = Self { images, ..Self::default() };
         for (triangle, cut_out) in cut_outs {
@@ -69,27 +69,27 @@ impl CutOuts {
         made
     }
 
-    /// Whether no triangle has holes.
+    /// Returns whether no triangle has holes.
     pub fn is_empty(&self) -> bool {
         self.indices.is_empty()
     }
 
-    /// All cut-outs, in the order in which they were given.
+    /// Returns all cut-outs, in the order of construction.
     pub fn cut_outs(&self) -> &[CutOut] {
         &self.all
     }
 
-    /// The images.
+    /// Returns the images.
     pub fn images(&self) -> &[AlphaImage] {
         &self.images
     }
 
-    /// Index in [`Self::cut_outs`] of a triangle's cut-out.
+    /// Returns the index into [`Self::cut_outs`] of a triangle's cut-out.
     pub fn index_of(&self, triangle: u32) -> Option<u32> {
         self.indices.get(&triangle).copied()
     }
 
-    /// Whether a triangle is opaque at a point with these weights of its second and third corner.
+    /// Returns whether a triangle is opaque at a point, given by the weights of its second and third corner.
     /// Triangles without a cut-out are opaque everywhere.
     pub fn is_opaque(&self, triangle: u32, [second, third]: [f32; 2]) -> bool {
         let Some(index) = self.index_of(triangle) else { return true };
@@ -105,7 +105,7 @@ impl CutOuts {
     }
 }
 
-/// Alpha of an image at texture coordinates, 0..=1.
+/// Returns the alpha of an image at texture coordinates, 0..=1.
 fn sample(image: &AlphaImage, material: &CutMaterial<u32>, uv: Vec2) -> f32 {
     let size = image.size().map(u32::cast_signed);
     let limit = Vec2::splat(MAX_TEXEL);
@@ -122,7 +122,7 @@ fn sample(image: &AlphaImage, material: &CutMaterial<u32>, uv: Vec2) -> f32 {
     row(0) * (1.0 - weight.y) + row(1) * weight.y
 }
 
-/// The texel, in a row of `size`, that an index stands for.
+/// Returns the texel in a row of `size` for an index, which may lie outside of the row.
 fn wrapped(index: i32, size: i32, wrap: Wrap) -> i32 {
     match wrap {
         Wrap::Repeat => index.rem_euclid(size),
@@ -138,7 +138,7 @@ fn wrapped(index: i32, size: i32, wrap: Wrap) -> i32 {
 mod tests {
     use super::*;
 
-    /// A triangle over the first half of a row of two texels, transparent and opaque.
+    /// Returns a triangle over the first half of a row of two texels, the first transparent and the second opaque.
     fn row(wrap: Wrap, nearest: bool) -> (AlphaImage, CutOut) {
         let image = AlphaImage::new(2, 1, vec![0, 255]).expect("two texels");
         let uvs = [Vec2::ZERO, Vec2::X, Vec2::Y];
@@ -185,7 +185,7 @@ mod tests {
         // Only the second corner is opaque.
         assert!(!is_opaque(|cut_out| cut_out.alphas = [0.0, 1.0, 0.0], [0.49, 0.5]));
         assert!(is_opaque(|cut_out| cut_out.alphas = [0.0, 1.0, 0.0], [0.8, 0.0]));
-        // Without its image the triangle has no holes, and other triangles never had.
+        // Without its image the triangle has no holes. Other triangles never have any.
         assert!(is_opaque(|cut_out| cut_out.material.image = Some(9), [0.1, 0.1]));
         assert!(CutOuts::new(vec![image.clone()], [(3, cut_out)]).is_opaque(2, [0.1, 0.1]));
     }

@@ -1,12 +1,12 @@
-//! How far the map's shadow edges lie from the true ones, on screen.
+//! Distance between the map's shadow edges and the true ones, on screen.
 //!
-//! An edge is the border between two neighbouring judged pixels of different verdicts; its sign is
-//! the direction toward the lit one, so that one side of a thin shadow is not compared with the other.
+//! An edge is the border between two neighbouring judged pixels with different verdicts. Its sign is the
+//! direction toward the lit pixel, so that the two sides of a thin shadow are not compared with each other.
 
 use crate::distances::{NONE_MARKED, squared_distances};
 
-/// Distances of shadow edges are clamped to this, in pixels; a true edge without one of the same sign
-/// in the map counts as this far away.
+/// Greatest distance of a shadow edge, in pixels; longer ones are clamped to it. A true edge counts as this
+/// far away if the map has no edge of the same sign.
 pub const MAX_DISPLACEMENT: f64 = 32.0;
 
 /// Sum of the distances of true transitions to the nearest transition of the same sign in the map,
@@ -17,8 +17,8 @@ pub(crate) struct Displacement {
     pub(crate) transitions: u64,
 }
 
-/// Compares the transitions of two pictures of verdicts (rows from the top, `None` where a pixel is
-/// not judged). Only true transitions between two pixels that count are summed.
+/// Compares the transitions of two pictures of verdicts (rows from the top, `None` where a pixel is not
+/// judged). Only true transitions between two counted pixels are summed.
 pub(crate) fn displacement(
     size: [usize; 2],
     truth: &(impl Fn(usize) -> Option<bool> + Sync),
@@ -27,7 +27,7 @@ pub(crate) fn displacement(
 ) -> Displacement {
     let mut found = Displacement::default();
     for axis in [0, 1] {
-        // Borders across an axis: one less than there are pixels along it.
+        // An axis has one border less than pixels.
         let borders = if axis == 0 { [size[0].max(1) - 1, size[1]] } else { [size[0], size[1].max(1) - 1] };
         let before = |x: usize, y: usize| y * size[0] + x;
         let after = |x: usize, y: usize| before(x, y) + if axis == 0 { 1 } else { size[0] };
@@ -49,7 +49,7 @@ pub(crate) fn displacement(
     found
 }
 
-/// A distance from its square, clamped.
+/// Returns a distance from its square, clamped.
 fn length(square: u32) -> f64 {
     if square == NONE_MARKED { MAX_DISPLACEMENT } else { f64::from(square).sqrt().min(MAX_DISPLACEMENT) }
 }

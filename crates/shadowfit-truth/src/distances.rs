@@ -1,16 +1,16 @@
-//! How far each pixel is from the nearest marked one, as exact squares of whole pixels.
+//! Distance of each pixel to the nearest marked one, as exact squares in whole pixels.
 //!
 //! A. Meijster, J. Roerdink, W. Hesselink, "A general algorithm for computing distance transforms in
-//! linear time", 2000: distances along the rows, then the lower envelope of parabolas down each
-//! column. Integers throughout, so that results are the same on every machine.
+//! linear time", 2000: distances along the rows, then the lower envelope of parabolas down each column. All
+//! arithmetic is in integers, so results are the same on every machine.
 
 use rayon::prelude::*;
 
-/// The value of the square of the distance where no pixel is marked.
+/// Value of a squared distance if no pixel is marked.
 pub(crate) const NONE_MARKED: u32 = u32::MAX;
 
-/// Square of the distance, in pixels, from each pixel's centre to that of the nearest marked one;
-/// [`NONE_MARKED`] without any. Rows from the top.
+/// Computes the squared distance, in pixels, from each pixel's centre to the centre of the nearest marked
+/// pixel, or [`NONE_MARKED`] if none is. Rows from the top.
 pub(crate) fn squared_distances(size: [usize; 2], is_marked: impl Fn(usize, usize) -> bool + Sync) -> Vec<u32> {
     let [width, height] = size;
     if width == 0 || height == 0 {
@@ -30,7 +30,7 @@ pub(crate) fn squared_distances(size: [usize; 2], is_marked: impl Fn(usize, usiz
     along_row
 }
 
-/// Distance along a row to the nearest marked pixel of that row.
+/// Computes the distances along a row to the nearest marked pixel of that row.
 fn sweep_row(row: &mut [u32], is_marked: impl Fn(usize) -> bool) {
     let mut last = NONE_MARKED;
     for (x, distance) in row.iter_mut().enumerate() {
@@ -44,16 +44,16 @@ fn sweep_row(row: &mut [u32], is_marked: impl Fn(usize) -> bool) {
     }
 }
 
-/// Squares of distances down a column, from its pixels' distances along their rows.
+/// Computes the squared distances down a column from its pixels' distances along their rows.
 fn column(along_row: &[u32]) -> Vec<u32> {
     let rows = along_row.len() as u32;
     let value = |row: u32, y: u32| {
         let (across, down) = (i64::from(along_row[row as usize]), i64::from(row) - i64::from(y));
         across * across + down * down
     };
-    // The last row in which row `upper` is no worse than the later row `lower`.
+    // Last row in which row `upper` is at least as good as the later row `lower`.
     let last_of = |upper: u32, lower: u32| (value(lower, 0) - value(upper, 0)).div_euclid(2 * i64::from(lower - upper));
-    // Rows of the lower envelope, and where each begins.
+    // Rows of the lower envelope, and the row where each of them starts.
     let mut envelope: Vec<(u32, i64)> = Vec::new();
     for row in (0..rows).filter(|row| along_row[*row as usize] != NONE_MARKED) {
         while envelope.last().is_some_and(|(top, start)| last_of(*top, row) < *start) {

@@ -1,21 +1,21 @@
-//! Quantiles of values that span many octaves, in little memory and independent of their order.
+//! Quantiles of values that span many octaves, in little memory and independent of the order of the values.
 
-/// Bins in an octave, so that a quantile is off by at most half a bin, 0.3%.
+/// Bins per octave. A quantile is off by at most half a bin, 0.3%.
 const BINS_PER_OCTAVE: f64 = 128.0;
-/// Octaves on either side of 1 that have bins; values beyond are counted in the last bin of that side.
+/// Octaves on either side of 1 that have bins. Values beyond are counted in the last bin of that side.
 const OCTAVES: f64 = 128.0;
 
 /// Counts of values in bins of equal width in log2.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Histogram {
-    /// Index of the first bin in `counts`; bin k spans log2 from k / 128 to (k + 1) / 128.
+    /// Index of the first bin in `counts`. Bin k spans log2 from k / 128 to (k + 1) / 128.
     first: i32,
     counts: Vec<u64>,
     total: u64,
 }
 
 impl Histogram {
-    /// Counts a value. NaN counts as infinite, a value of 0 or less as the least one.
+    /// Counts a value. NaN counts as infinite. A value of 0 or less counts in the first bin.
     pub fn add(&mut self, value: f64) {
         let log2 = if value.is_nan() { f64::INFINITY } else { value.max(0.0).log2() };
         let bin = (log2.clamp(-OCTAVES, OCTAVES) * BINS_PER_OCTAVE).floor() as i32;
@@ -23,12 +23,12 @@ impl Histogram {
         self.total += 1;
     }
 
-    /// Number of values counted.
+    /// Returns the number of counted values.
     pub fn total(&self) -> u64 {
         self.total
     }
 
-    /// Counts all that `other` counted.
+    /// Adds the counts of `other`.
     pub fn merge(&mut self, other: &Self) {
         for (bin, count) in (other.first..).zip(&other.counts) {
             if *count > 0 {
@@ -38,8 +38,8 @@ impl Histogram {
         self.total += other.total;
     }
 
-    /// Log2 of the quantile `q`, 0..=1: the middle of the first bin at which the count reaches
-    /// ceil(q n) of the n values. `None` without values; infinite where the quantile is 2^128 or more.
+    /// Returns log2 of the quantile `q`, 0..=1: the middle of the first bin at which the count reaches ceil(q
+    /// n) of the n values. `None` without values; infinite if the quantile is 2^128 or more.
     pub fn log2_quantile(&self, q: f64) -> Option<f64> {
         let wanted = ((q * self.total as f64).ceil() as u64).max(1);
         let mut count = 0;
@@ -52,7 +52,7 @@ impl Histogram {
         Some(if bin >= last { f64::INFINITY } else { (bin + 0.5) / BINS_PER_OCTAVE })
     }
 
-    /// The count of a bin, which is added if it is not there yet.
+    /// Returns the count of a bin. Adds the bin if it is missing.
     fn count_mut(&mut self, bin: i32) -> &mut u64 {
         if self.counts.is_empty() {
             self.first = bin;

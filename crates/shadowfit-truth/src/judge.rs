@@ -1,9 +1,9 @@
-//! Sorts the wrong pixels of a picture: false shadow (acne), false light (peter-panning, leaks), hole
+//! Classifies the wrong pixels of a picture: false shadow (acne), false light (peter-panning, leaks), hole
 //! (clipping) and edge (aliasing).
 //!
-//! A picture's filtered shadow factors are compared with the truth. The class of a wrong pixel depends
-//! on the map that it reads: how wide its texels are on screen, and whether it holds an
-//! occluder. Of two maps that are blended, it is the one that weighs more.
+//! A picture's filtered shadow factors are compared with the truth. The class of a wrong pixel depends on the
+//! map that it reads: on the width of the map's texels on screen, and on whether the map holds an occluder.
+//! If two maps are blended, the map with the greater weight decides.
 
 use rayon::prelude::*;
 
@@ -20,29 +20,29 @@ use crate::truth::{Truth, TruthPoint};
 pub struct Judged {
     /// Class of each pixel.
     pub classes: Vec<Class>,
-    /// Screen pixels per shadow texel along the worse axis, in the map that is read. Infinite where no map covers the
-    /// point or the surface is edge-on to the light; not a number where the pixel is not judged.
+    /// Screen pixels per shadow texel along the worse axis, in the map that is read. Infinite if no map
+    /// covers the point or the surface is edge-on to the light. NaN if the pixel is not judged.
     pub pixels_per_texel: Vec<f32>,
-    /// Whether the pixel lies in the edge zone; `false` where it is not judged.
+    /// Whether the pixel lies in the edge zone. `false` if it is not judged.
     pub edge_zone: Vec<bool>,
-    /// Index of the map that is read, of two the one that weighs more; 255 stands for all from there on. `None` where no map covers the point or the
-    /// pixel is not judged.
+    /// Index of the map that is read, or of the one with the greater weight if two are blended. Indices from
+    /// 255 on are recorded as 255. `None` if no map covers the point or the pixel is not judged.
     pub map_index: Vec<Option<u8>>,
     /// Whether the pixel is judged and counts in the sums.
     pub counted: Vec<bool>,
-    /// Sums over the pixels that count. [`PictureTally::is_empty`] where there are none.
+    /// Sums over the counted pixels. [`PictureTally::is_empty`] without any.
     pub tally: PictureTally,
 }
 
 /// Judges a picture that was shadowed by `maps`.
 ///
-/// `factors` holds the share of the light that the filtered maps let through at each pixel, 0..=1,
-/// rows from the top. A factor that is not a number counts as 0; factors of pixels that are not judged
-/// are ignored. `counts` says whether the pixels of a triangle (index into the tracer's) are summed:
-/// those of the others are judged too, and their shadow edges are edges, but no sum contains them.
+/// `factors` holds the share of the light that the filtered maps let through at each pixel, 0..=1, rows from
+/// the top. NaN counts as 0. Factors of pixels that are not judged are ignored. `counts` returns whether the
+/// pixels of a triangle (index into the tracer's) are summed. The other pixels are judged too, and their
+/// shadow edges count as edges, but they do not enter the sums.
 ///
-/// The edge zone reaches [`PictureMaps::edge_width`] pixels from a true shadow edge, or as many texels where a texel is
-/// wider than a pixel on screen. At a point that no map covers it is in pixels.
+/// The edge zone reaches [`PictureMaps::edge_width`] pixels from a true shadow edge. The width is in texels
+/// if a texel is wider than a pixel on screen. At a point that no map covers it is in pixels.
 ///
 /// # Panics
 ///
@@ -57,8 +57,8 @@ pub fn judge(
     judged(tracer, truth, maps, factors, counts, || true)
 }
 
-/// As [`judge()`], for as long as `goes_on` says so, which is asked at every pixel; `None` as soon as it does not. Once
-/// it has said no, it must not say yes again.
+/// Judges a picture like [`judge()`], but can be cancelled. It calls `goes_on` at every pixel. Once that
+/// returns false, it stops and returns `None`. From then on `goes_on` must not return true.
 ///
 /// # Panics
 ///
@@ -83,7 +83,7 @@ fn judged(
     counts: impl Fn(u32) -> bool + Sync,
     goes_on: impl Fn() -> bool + Sync,
 ) -> Judged {
-    assert_eq!(factors.len(), truth.points.len(), "as many factors as pixels");
+    assert_eq!(factors.len(), truth.points.len(), "one factor for each pixel");
     let rays = PixelTruth { tracer, camera: &truth.camera, settings: &truth.settings };
     let findings: Vec<PixelFinding> = (0..factors.len())
         .into_par_iter()
@@ -107,17 +107,18 @@ fn judged(
     judged
 }
 
-/// Sums over the pixels that count.
+/// Computes the sums over the counted pixels.
 fn sums(truth: &Truth, judged: &Judged, factors: &[f32]) -> PictureTally {
     let mut tally = PictureTally { frames: 1, ..PictureTally::default() };
     for pixel in (0..factors.len()).filter(|pixel| judged.counted[*pixel]) {
         let Some(point) = &truth.points[pixel] else { continue };
-        // A factor that is not a number counts as no light, as it does for the class.
+        // NaN counts as no light, as in the classification.
         let factor = if factors[pixel].is_nan() { 0.0 } else { factors[pixel].clamp(0.0, 1.0) };
         tally.add(&CountedPixel {
             class: judged.classes[pixel],
             is_in_edge_zone: judged.edge_zone[pixel],
             error: (factor - point.lit).abs(),
+            facing: point.facing,
             is_covered: judged.map_index[pixel].is_some(),
             is_grazing: point.facing < MIN_FACING,
             pixels_per_texel: judged.pixels_per_texel[pixel],

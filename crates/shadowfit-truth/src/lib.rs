@@ -1,20 +1,22 @@
 //! Ray-traced reference shadows, and the errors of a shadow map judged against them.
 //!
-//! It takes plain triangles (world space, right-handed, metres) and cut-outs, so that any engine can
-//! be judged. [`Tracer`] casts rays, [`Truth`] says whether light reaches each pixel, [`judge()`]
-//! sorts the pixels of a picture into right ones and the named kinds of wrong ones. With the feature `gpu`,
-//! compute passes fill a texture with the same classes. The light is a sun or, on the CPU alone, one with a position
-//! ([`TruthLight`]). [`AmbientTruth`] is the reference of ambient occlusion.
+//! The input is plain triangles (world space, right-handed, metres) and cut-outs, so that any engine can be
+//! judged. [`Tracer`] casts rays. [`Truth`] holds how much light reaches each pixel. [`judge()`] classifies
+//! the pixels of a picture as right or as one of the kinds of wrong. With the feature `gpu`, compute passes
+//! fill a texture with the same classes. The light is a sun or, on the CPU only, a light with a position
+//! ([`TruthLight`]). [`AmbientTruth`] is the reference for ambient occlusion. [`FlipReference`] measures how
+//! different two pictures look.
 //!
-//! Each module uses only modules of the lines below its own:
+//! Each module uses only modules on lower lines:
 //!
 //! ```text
 //! crawl
-//! gpu      judge
-//!          pixel
+//! gpu  judge
+//! pixel  tally
+//! area
 //! ambient  truth
-//! displacement  light  seen  tally
-//! camera  class  distances  histogram  maps  sun  tracer
+//! displacement  light  seen
+//! camera  class  distances  flip  histogram  maps  sun  tracer
 //! cut_out  memory  spiral
 //! ```
 
@@ -26,6 +28,7 @@ mod crawl;
 mod cut_out;
 mod displacement;
 mod distances;
+mod flip;
 #[cfg(feature = "gpu")]
 pub mod gpu;
 mod histogram;
@@ -48,6 +51,7 @@ pub use class::Class;
 pub use crawl::{MapsBefore, crawl};
 pub use cut_out::{AlphaImage, CutMaterial, CutOut, CutOuts, Wrap};
 pub use displacement::MAX_DISPLACEMENT;
+pub use flip::FlipReference;
 pub use histogram::Histogram;
 pub use judge::{Judged, judge, judge_while};
 pub use light::{LightRay, TruthLight};

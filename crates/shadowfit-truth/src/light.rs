@@ -1,6 +1,6 @@
 //! The light that truth is traced to, and the rays from a point toward it.
 //!
-//! A sun shines along a direction and has no end; a spot shines from a position, and what lies beyond it casts no
+//! A sun has a direction and is infinitely far away. A spot has a position, and objects beyond it cast no
 //! shadow.
 
 use glam::{DMat4, DVec3};
@@ -8,48 +8,50 @@ use glam::{DMat4, DVec3};
 use crate::spiral;
 use crate::sun::Sun;
 
-/// Rays in the cone of a sun, unless one says otherwise.
+/// Default number of rays in the cone of a sun.
 const SUN_RAYS: u32 = 64;
 
 /// A light. World space, right-handed, metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum TruthLight {
-    /// One that is infinitely far away.
+    /// An infinitely distant light.
     Sun {
         /// Unit direction toward the light, world axes.
         to_light: DVec3,
         /// Angular radius, in radians; 0 for hard shadows.
         radius: f64,
-        /// Rays in its cone when it has a radius.
+        /// Rays in its cone. Used only if the radius is greater than 0.
         rays: u32,
     },
-    /// A point, with hard shadows: a headlight or a lamp.
+    /// A point light with hard shadows: a headlight or a lamp.
     Spot {
-        /// Where it is.
+        /// Position of the light.
         position: DVec3,
-        /// What it shines on: clip from world of its perspective, with x and y in -1..=1 and depth in 0..=1 after
-        /// division by w, plain or reversed, and w above 0 in front of the light. Points outside of it, nearer than its
-        /// near plane or beyond its far plane are not judged. `None` for a light that shines on all sides.
+        /// Matrix clip from world of the light's perspective, with x and y in -1..=1 and depth in 0..=1 after
+        /// division by w, plain or reversed, and w above 0 in front of the light. Points outside of the
+        /// image, nearer than its near plane or beyond its far plane are not judged. `None` for a light that
+        /// shines in all directions.
         image: Option<DMat4>,
     },
 }
 
-/// A straight way from a point to the light.
+/// A straight line from a point to the light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightRay {
-    /// Unit direction toward the light, world axes; zero where the point is at the light's position.
+    /// Unit direction toward the light, world axes. Zero if the point is at the light's position.
     pub direction: DVec3,
-    /// Distance of the light, in metres; infinite for a sun.
+    /// Distance to the light, in metres. Infinite for a sun.
     pub length: f64,
 }
 
 impl TruthLight {
-    /// A sun with hard shadows; `to_light` is the unit direction toward it, world axes.
+    /// Returns a sun with hard shadows. `to_light` is the unit direction toward it, world axes.
     pub fn sun(to_light: DVec3) -> Self {
         Self::Sun { to_light, radius: 0.0, rays: SUN_RAYS }
     }
 
-    /// The way from a point of the world to the light, to the centre of a sun with a radius.
+    /// Returns the ray from a world point to the light. For a sun with a radius, it leads to the sun's
+    /// centre.
     pub fn ray_from(&self, point: DVec3) -> LightRay {
         match self {
             Self::Sun { to_light, .. } => LightRay { direction: *to_light, length: f64::INFINITY },
@@ -57,8 +59,8 @@ impl TruthLight {
         }
     }
 
-    /// Whether the light shines toward a point of the world, if nothing stands in between: inside of a spot's image,
-    /// its borders included. A light without an image shines toward every point.
+    /// Returns whether the light shines toward a world point if nothing blocks it: whether the point is
+    /// inside of a spot's image, borders included. A light without an image shines toward every point.
     pub fn shines_toward(&self, point: DVec3) -> bool {
         let Self::Spot { image: Some(clip_from_world), .. } = self else { return true };
         let clip = *clip_from_world * point.extend(1.0);
@@ -66,7 +68,7 @@ impl TruthLight {
         clip.w > 0.0 && is_within
     }
 
-    /// The same light with so many rays, if it is a sun.
+    /// Returns the same light with this number of rays. A spot is returned unchanged.
     pub(crate) fn with_rays(self, number: u32) -> Self {
         match self {
             Self::Sun { to_light, radius, .. } => Self::Sun { to_light, radius, rays: number },
@@ -74,7 +76,7 @@ impl TruthLight {
         }
     }
 
-    /// What its rays are made of.
+    /// Prepares the light's rays.
     pub(crate) fn rays(&self) -> LightRays {
         match *self {
             Self::Sun { to_light, radius, rays } => LightRays::Sun(Sun::new(to_light, radius, rays)),
@@ -90,7 +92,7 @@ impl LightRay {
     }
 }
 
-/// A light made ready for many points.
+/// A light that is prepared for many points.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum LightRays {
     Sun(Sun),
@@ -99,7 +101,7 @@ pub(crate) enum LightRays {
 }
 
 impl LightRays {
-    /// Number of rays of a point.
+    /// Returns the number of rays per point.
     pub(crate) fn count(&self) -> u32 {
         match self {
             Self::Sun(sun) => sun.rays(),
@@ -107,7 +109,8 @@ impl LightRays {
         }
     }
 
-    /// The rays of a pixel that start at `origin`, world space; a single one leads to the light's centre.
+    /// Returns the rays of a pixel that start at `origin`, world space. A single ray leads to the light's
+    /// centre.
     pub(crate) fn from(&self, origin: DVec3, pixel: usize) -> impl Iterator<Item = LightRay> {
         let (rays, turn) = (*self, spiral::turn_of(pixel));
         (0..rays.count()).map(move |ray| match rays {
@@ -123,7 +126,7 @@ mod tests {
 
     use super::*;
 
-    /// Straight down from 3 m over the origin, 90 degrees wide, from 1 m to 5 m.
+    /// Returns a light that shines straight down from 3 m over the origin, 90 degrees wide, from 1 m to 5 m.
     fn image() -> DMat4 {
         let view = look_to_mat4(DVec3::Y * 3.0, DVec3::NEG_Y, DVec3::X);
         perspective(90f64.to_radians(), 1.0, 1.0, 5.0) * view

@@ -1,29 +1,28 @@
-//! How much memory a tracer needs, estimated before it is built.
+//! Memory that a tracer needs, estimated before it is built.
 //!
-//! It follows from the structures of the `obvhs` crate, and a test compares it with what the allocator
+//! The estimate follows from the structures of the `obvhs` crate. A test compares it with the allocator's
 //! counts.
 
 use glam::Vec3;
 use obvhs::bvh2::node::Bvh2Node;
 
-/// Nodes for each triangle while the hierarchy is built: two for the tree of single triangles, and one
-/// in each of the two lists between which the builder moves what is not joined yet.
+/// Nodes per triangle while the hierarchy is built: two for the tree of single triangles, and one in each of
+/// the two lists between which the builder moves nodes that are not joined yet.
 const NODES_BUILDING: u64 = 4;
-/// Bytes for each triangle of what the builder sorts: a code along a space-filling curve, with its
-/// index.
+/// Bytes per triangle of the builder's sort keys: a code along a space-filling curve, with its index.
 const CODE: u64 = size_of::<[u128; 2]>() as u64;
-/// Lists of triangles' indices while the hierarchy is built.
+/// Lists of triangle indices while the hierarchy is built.
 const INDICES_BUILDING: u64 = 2;
-/// Nodes for every three triangles afterwards: leaves hold about three triangles, and there are twice
-/// as many nodes as leaves. Measured: 1.5 to 2.3, more where fewer triangles share edges.
+/// Nodes per three triangles afterwards. Leaves hold about three triangles, and there are twice as many nodes
+/// as leaves. Measured: 1.5 to 2.3, more if fewer triangles share edges.
 const NODES_KEPT_FOR_3: u64 = 2;
 
-/// Memory that a tracer needs, in bytes, its cut-outs not included.
+/// Memory that a tracer needs, in bytes, without its cut-outs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TracerMemory {
-    /// Peak while it is built, including what stays.
+    /// Peak while the tracer is built, including the memory that is kept.
     pub building: u64,
-    /// What is kept once it is built.
+    /// Memory that is kept once the tracer is built.
     pub kept: u64,
 }
 

@@ -1,7 +1,8 @@
-//! One pixel of a picture, judged by itself: for whoever asks about a pixel and not about the picture.
+//! The judgement of a single pixel.
 //!
-//! The judge of pictures asks here for each of its pixels, with what is seen from the rasteriser and the distances to
-//! shadow edges from the whole picture. Asked alone, both are found by rays around the pixel.
+//! The judge of pictures calls this module for each pixel, with the visible triangle from the rasteriser and
+//! the distances to shadow edges from the whole picture. For a pixel judged alone, rays around the pixel find
+//! both.
 
 use rayon::prelude::*;
 
@@ -13,18 +14,18 @@ use crate::seen::seen_by_ray;
 use crate::tracer::Tracer;
 use crate::truth::{self, Occluder, TruthPoint, TruthSettings, is_transition, is_within};
 
-/// Farthest that a shadow's edge is looked for around a single pixel, in pixels: within it lies the edge zone of texels
-/// that are 25 pixels wide, with the widest filter that is not soft.
+/// Farthest distance at which shadow edges are searched around a single pixel, in pixels. It covers the edge
+/// zone of texels that are 25 pixels wide, with the widest filter that is not soft.
 const FARTHEST_EDGE: f32 = 128.0;
 
-/// The truth of a picture, found pixel by pixel. Pixels are indices in the rows from the top.
+/// The truth of a picture, traced pixel by pixel. Pixels are indices in rows from the top.
 #[derive(Clone, Copy, Debug)]
 pub struct PixelTruth<'a> {
-    /// Casts the rays.
+    /// Tracer that casts the rays.
     pub tracer: &'a Tracer,
     /// Camera of the picture.
     pub camera: &'a PixelCamera,
-    /// How truth is traced.
+    /// How the truth is traced.
     pub settings: &'a TruthSettings,
 }
 
@@ -33,26 +34,26 @@ pub struct PixelTruth<'a> {
 pub struct PixelFinding {
     /// Class of the pixel.
     pub class: Class,
-    /// Screen pixels per shadow texel along the worse axis, in the map that is read. Infinite where no map covers the
-    /// point or the surface is edge-on to the light; not a number where the pixel is not judged.
+    /// Screen pixels per shadow texel along the worse axis, in the map that is read. Infinite if no map
+    /// covers the point or the surface is edge-on to the light. NaN if the pixel is not judged.
     pub pixels_per_texel: f32,
-    /// Whether the pixel lies in the edge zone. Of a pixel [that is judged alone](PixelTruth::judge) it is told only
-    /// where it is wrong, and `false` otherwise.
+    /// Whether the pixel lies in the edge zone. If a pixel [is judged alone](PixelTruth::judge), it is
+    /// computed only for wrong pixels, and `false` otherwise.
     pub is_in_edge_zone: bool,
-    /// Index of the map that is read, of two the one that weighs more; 255 stands for all from there on. `None` where
-    /// no map covers the point or the pixel is not judged.
+    /// Index of the map that is read, or of the one with the greater weight if two are blended. Indices from
+    /// 255 on are recorded as 255. `None` if no map covers the point or the pixel is not judged.
     pub map_index: Option<u8>,
 }
 
 impl PixelFinding {
-    /// What is found at a pixel that is not judged.
+    /// The finding for a pixel that is not judged.
     pub const NOT_JUDGED: Self =
         Self { class: Class::NotJudged, pixels_per_texel: f32::NAN, is_in_edge_zone: false, map_index: None };
 }
 
 impl PixelTruth<'_> {
-    /// What a pixel shows between the near and the far plane, by a ray, and how much light reaches it; `None` for the
-    /// sky and for a pixel beyond the picture.
+    /// Traces a ray for the point that a pixel shows between the near and the far plane, and the light that
+    /// reaches it. `None` for the sky and for a pixel beyond the picture.
     pub fn point(&self, pixel: usize) -> Option<TruthPoint> {
         if pixel >= self.camera.pixels() {
             return None;
@@ -62,19 +63,18 @@ impl PixelTruth<'_> {
         Some(truth::point(self.tracer, self.camera, self.settings, &rays, pixel, triangle))
     }
 
-    /// Everything between a judged point and the light, along a ray that is blocked, in no order; nothing where every ray
-    /// is free.
+    /// Returns all occluders between a judged point and the light along a blocked ray, in no particular
+    /// order. Empty if every ray is free.
     pub fn occluders(&self, pixel: usize, point: &TruthPoint) -> Vec<Occluder> {
         let mut occluders = Vec::new();
         self.settings.for_each_occluder(self.tracer, pixel, point, |occluder| occluders.push(occluder));
         occluders
     }
 
-    /// Judges a pixel alone, by the rules of [`judge()`](crate::judge()). `factor` is the share of the light that the
-    /// filtered maps let through there.
+    /// Judges a single pixel by the rules of [`judge()`](crate::judge()). `factor` is the share of the light
+    /// that the filtered maps let through there.
     ///
-    /// An edge zone that reaches farther than 128 pixels ends there: all of it is looked at by rays, and only where
-    /// the pixel is wrong.
+    /// The edge zone is searched by rays, and only if the pixel is wrong. It is cut off at 128 pixels.
     pub fn judge(&self, maps: &PictureMaps, factor: f32, pixel: usize, point: &TruthPoint) -> PixelFinding {
         if !point.is_judged {
             return PixelFinding::NOT_JUDGED;
@@ -85,8 +85,9 @@ impl PixelTruth<'_> {
         })
     }
 
-    /// As [`Truth::transition_distance`](crate::Truth::transition_distance), by rays around a pixel, as far as `at_most`
-    /// pixels; infinite where no transition is as near.
+    /// Returns the distance to the nearest transition like
+    /// [`Truth::transition_distance`](crate::Truth::transition_distance), by rays around a pixel, up to
+    /// `at_most` pixels. Infinite if no transition is that near.
     pub fn transition_distance(&self, pixel: usize, at_most: f32) -> f32 {
         let mut radius = 2;
         loop {
@@ -100,11 +101,11 @@ impl PixelTruth<'_> {
         }
     }
 
-    /// Square of the distance to the nearest transition pixel in the square of `radius` pixels around a pixel.
+    /// Returns the squared distance to the nearest transition pixel within `radius` pixels per axis.
     fn transition_square(&self, pixel: usize, radius: usize) -> u32 {
         let size = self.camera.size.map(|side| side as usize);
         let middle = [pixel % size[0], pixel / size[0]];
-        // A transition at the square's side shows in the pixels beyond it.
+        // A transition at the square's border depends on the pixels beyond it.
         let first = middle.map(|place| place.saturating_sub(radius + 1));
         let last = [0, 1].map(|axis| (middle[axis] + radius + 1).min(size[axis] - 1));
         let [width, height] = [0, 1].map(|axis| last[axis] - first[axis] + 1);
@@ -125,7 +126,8 @@ impl PixelTruth<'_> {
             .unwrap_or(NONE_MARKED)
     }
 
-    /// Judges a pixel; `is_near_transition` says whether a shadow's true edge lies within a number of pixels.
+    /// Judges a pixel. `is_near_transition` returns whether a true shadow edge lies within a number of
+    /// pixels.
     pub(crate) fn find(
         &self,
         maps: &PictureMaps,
@@ -153,15 +155,15 @@ impl PixelTruth<'_> {
         }
     }
 
-    /// Pixels per texel along the worse axis, in the map that the point reads; infinite where the surface
-    /// is edge-on to the light.
+    /// Returns pixels per texel along the worse axis, in the map that the point reads. Infinite if the
+    /// surface is edge-on to the light.
     fn texel_width(&self, choice: &SelectedMap, pixel: usize, point: &TruthPoint) -> f32 {
         let steps = self.camera.pixel_steps(&self.camera.ray_of(pixel), point.normal, point.view_depth);
         let pixels = pixels_per_texel(choice.map.gradients(&choice.position).texels_per_step(steps)) as f32;
         if pixels.is_nan() { f32::INFINITY } else { pixels }
     }
 
-    /// Whether the point reads no map, or one that does not hold any of its occluders.
+    /// Returns whether the point reads no map, or a map that holds none of its occluders.
     fn is_hole(&self, maps: &PictureMaps, choice: Option<&SelectedMap>, pixel: usize, point: &TruthPoint) -> bool {
         let Some(choice) = choice else { return true };
         let mut is_held = false;

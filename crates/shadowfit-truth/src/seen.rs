@@ -1,4 +1,4 @@
-//! What is seen at a pixel's centre: the triangle, and the point on its plane.
+//! The visible triangle at a pixel's centre, and the visible point on its plane.
 
 use glam::{DVec3, Vec3};
 
@@ -8,7 +8,7 @@ use crate::tracer::Tracer;
 /// A point that a pixel shows. World space, metres.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SeenPoint {
-    /// On the plane of the triangle.
+    /// Position on the plane of the triangle.
     pub(crate) position: DVec3,
     /// Unit geometric normal on the side of the eye; zero where the triangle has no area.
     pub(crate) normal: DVec3,
@@ -16,7 +16,7 @@ pub(crate) struct SeenPoint {
     pub(crate) view_depth: f64,
 }
 
-/// The nearest triangle at a pixel between the near and the far plane.
+/// Returns the nearest triangle at a pixel between the near and the far plane.
 pub(crate) fn seen_by_ray(tracer: &Tracer, camera: &PixelCamera, pixel: usize) -> Option<u32> {
     let ray = camera.ray_of(pixel);
     let hit = tracer.first_hit(ray.origin.as_vec3(), ray.direction.as_vec3())?;
@@ -24,8 +24,9 @@ pub(crate) fn seen_by_ray(tracer: &Tracer, camera: &PixelCamera, pixel: usize) -
     (camera.near..=camera.far).contains(&depth).then_some(hit.triangle)
 }
 
-/// Where the ray through a pixel's centre meets the plane of the triangle that is seen there. Its view depth is clamped
-/// to that of the triangle's corners, since the ray may meet the plane of a sliver that is seen edge-on anywhere.
+/// Returns the intersection of the ray through a pixel's centre with the plane of the visible triangle. The
+/// view depth is clamped to the range of the triangle's corners, because the ray may hit the plane of an
+/// edge-on sliver anywhere.
 pub(crate) fn seen_point(tracer: &Tracer, camera: &PixelCamera, pixel: usize, triangle: u32) -> SeenPoint {
     let ray = camera.ray_of(pixel);
     let normal = tracer.plane_normal(triangle);
@@ -33,7 +34,7 @@ pub(crate) fn seen_point(tracer: &Tracer, camera: &PixelCamera, pixel: usize, tr
     let depths = corners.map(|corner| camera.view_depth(corner));
     let nearest = depths.into_iter().fold(f64::INFINITY, f64::min).max(camera.near);
     let farthest = depths.into_iter().fold(f64::NEG_INFINITY, f64::max).min(camera.far);
-    // A ray within the plane gives NaN, which `max` and `min` drop.
+    // If the ray lies within the plane, the depth is NaN, which `max` and `min` drop.
     let along = normal.dot(ray.direction);
     let view_depth = (normal.dot(corners[0] - ray.origin) / along).max(nearest).min(farthest);
     let normal = if along > 0.0 { -normal } else { normal };

@@ -1,23 +1,24 @@
-//! Directions toward the sun: one for a hard sun, or many spread evenly over its disc.
+//! Directions toward the sun: one for a hard sun, or many that are spread evenly over its disc.
 //!
-//! The spread is Vogel's spiral on the cap of the sphere.
+//! The directions form Vogel's spiral on the cap of the sphere.
 
 use glam::DVec3;
 
 use crate::spiral;
 
-/// A sun as rays see it.
+/// A sun prepared for rays.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sun {
     to_light: DVec3,
     across: [DVec3; 2],
-    /// One minus the cosine of the angular radius, without loss of digits.
+    /// One minus the cosine of the angular radius, computed without cancellation.
     cap: f64,
     rays: u32,
 }
 
 impl Sun {
-    /// `to_light` is the unit direction toward the centre, `radius` the angular radius in radians.
+    /// Prepares a sun. `to_light` is the unit direction toward its centre, `radius` the angular radius in
+    /// radians.
     pub(crate) fn new(to_light: DVec3, radius: f64, rays: u32) -> Self {
         let is_soft = radius > 0.0 && rays > 1;
         let (first, second) =
@@ -26,18 +27,18 @@ impl Sun {
         Self { to_light, across: [first, second], cap: 2.0 * half * half, rays: if is_soft { rays } else { 1 } }
     }
 
-    /// Number of rays of a point.
+    /// Returns the number of rays per point.
     pub(crate) fn rays(&self) -> u32 {
         self.rays
     }
 
-    /// Unit direction of a ray below [`Self::rays`], of a spiral that is turned by `turn` radians; for a hard sun that
-    /// toward the centre.
+    /// Returns the unit direction of the ray with an index below [`Self::rays`]. The spiral is turned by
+    /// `turn` radians. A hard sun has one ray, toward its centre.
     pub(crate) fn direction(&self, ray: u32, turn: f64) -> DVec3 {
         if self.rays == 1 {
             return self.to_light;
         }
-        // Equal parts of the cap's area are equal parts of its height.
+        // Parts of equal area on the cap have equal heights.
         let height = self.cap * (f64::from(ray) + 0.5) / f64::from(self.rays);
         let radius = (height * (2.0 - height)).sqrt();
         let (sin, cos) = spiral::sin_cos(ray, turn);
@@ -60,7 +61,7 @@ mod tests {
         let directions = directions(&Sun::new(to_light, 0.1, 64), 5);
         assert_eq!(directions.len(), 64);
         assert!(directions.iter().all(|d| d.is_normalized() && d.angle_between(to_light) < 0.1));
-        // The mean points at the centre: the spread is even.
+        // The spread is even, so the mean points at the centre.
         let mean = directions.iter().sum::<DVec3>() / 64.0;
         assert!(mean.angle_between(to_light) < 0.1 * 0.02, "{}", mean.angle_between(to_light));
     }
@@ -69,7 +70,7 @@ mod tests {
     fn equal_discs_hold_equal_shares_of_the_rays() {
         let directions = directions(&Sun::new(DVec3::Y, 0.2, 400), 0);
         let within = |angle: f64| directions.iter().filter(|d| d.angle_between(DVec3::Y) < angle).count();
-        // Half of the cap's area lies within about its radius over the square root of 2.
+        // Half of the cap's area lies within its radius divided by √2, approximately.
         assert!(within(0.2 / 2.0f64.sqrt()).abs_diff(200) <= 1);
     }
 

@@ -1,4 +1,4 @@
-//! Rays against triangles, through the bounding volume hierarchy of the `obvhs` crate.
+//! Intersection of rays with triangles, through the bounding volume hierarchy of the `obvhs` crate.
 
 use std::fmt;
 use std::sync::Arc;
@@ -13,28 +13,27 @@ use shadowfit_rays::build_bvh2;
 use crate::cut_out::CutOuts;
 use crate::memory::TracerMemory;
 
-/// Says whether a triangle, given by its index, is opaque at a point with these weights of its second
-/// and third corner.
+/// Function that returns whether a triangle, given by its index, is opaque at a point, given by the weights
+/// of its second and third corner.
 type AlphaTest = Arc<dyn Fn(u32, [f32; 2]) -> bool + Send + Sync>;
 
-/// A refitted hierarchy is rebuilt when its cost has grown by more than this factor since it was
-/// built. The time of a ray grows about as the cost does, and a build takes as long as many thousands
-/// of rays.
+/// Growth in cost at which a refitted hierarchy is rebuilt. The time per ray grows about like the cost, and a
+/// build costs as much time as thousands of rays.
 const MAX_COST_GROWTH: f32 = 1.5;
 
-/// Triangles, and a hierarchy through which rays find those that they meet. A clone copies both, and shares
-/// the images of cut-outs.
+/// Triangles, and a hierarchy to find the triangles that a ray hits. A clone copies both and shares the
+/// images of cut-outs.
 #[derive(Clone)]
 pub struct Tracer {
     triangles: Vec<Corners>,
     bvh: Option<Bvh2>,
-    /// Cost of a ray when the hierarchy was built.
+    /// Cost per ray when the hierarchy was built.
     built_cost: f32,
     alpha_test: Option<AlphaTest>,
     cut_outs: CutOuts,
 }
 
-/// Where a ray met a triangle.
+/// Intersection of a ray with a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
     /// Distance along the ray, in lengths of its direction.
@@ -43,13 +42,13 @@ pub struct Hit {
     pub triangle: u32,
 }
 
-/// The number of moved triangles differs from that of the tracer's.
+/// Error: the number of moved triangles differs from the tracer's.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("the tracer has {wanted} triangles and was given {given} moved ones: give every triangle, in the same order")]
+#[error("the tracer has {wanted} triangles and got {given} moved ones: pass every triangle, in the same order")]
 pub struct TriangleCountError {
-    /// Triangles of the tracer.
+    /// Number of triangles in the tracer.
     pub wanted: usize,
-    /// Triangles that were given.
+    /// Number of triangles that were passed.
     pub given: usize,
 }
 
@@ -64,8 +63,8 @@ impl fmt::Debug for Tracer {
 }
 
 impl Tracer {
-    /// Builds the hierarchy. Vertices in world space, metres; triangles with non-finite vertices
-    /// are never met.
+    /// Builds the hierarchy. Vertices are in world space, metres. Rays never hit triangles with non-finite
+    /// vertices.
     pub fn new(triangles: impl IntoIterator<Item = [Vec3; 3]>) -> Self {
         let triangles: Vec<Corners> = triangles.into_iter().map(Corners::new).collect();
         let bvh = build(&triangles);
@@ -73,13 +72,13 @@ impl Tracer {
         Self { triangles, bvh, built_cost, alpha_test: None, cut_outs: CutOuts::default() }
     }
 
-    /// Moves all triangles, given in their order (world space, metres): for animated scenes. The
-    /// hierarchy is refitted, or rebuilt where a ray through the refitted one would cost more than
-    /// 1.5 times what it cost when it was built.
+    /// Moves all triangles, passed in their order (world space, metres), for animated scenes. The hierarchy
+    /// is refitted. It is rebuilt if a ray through the refitted one would cost more than 1.5 times its cost
+    /// after the last build.
     ///
     /// # Errors
     ///
-    /// When the number of triangles differs; nothing is changed then.
+    /// If the number of triangles differs. The tracer is then unchanged.
     pub fn set_triangles(&mut self, moved: impl IntoIterator<Item = [Vec3; 3]>) -> Result<(), TriangleCountError> {
         let moved: Vec<Corners> = moved.into_iter().map(Corners::new).collect();
         if moved.len() != self.triangles.len() {
@@ -88,7 +87,7 @@ impl Tracer {
         self.triangles = moved;
         let Some(bvh) = &mut self.bvh else { return Ok(()) };
         refit(bvh, &self.triangles);
-        // A cost that is not a number also leads to a rebuild.
+        // A NaN cost also leads to a rebuild.
         let is_good = cost(bvh) <= self.built_cost * MAX_COST_GROWTH;
         if !is_good {
             self.bvh = build(&self.triangles);
@@ -97,87 +96,88 @@ impl Tracer {
         Ok(())
     }
 
-    /// Memory that a tracer of this number of triangles will need. It is right to a factor of 1.5 for a
-    /// thousand triangles or more, given to [`Self::new`] by an iterator that knows its length.
+    /// Estimates the memory of a tracer with this number of triangles. The estimate is within a factor of 1.5
+    /// for a thousand triangles or more, passed to [`Self::new`] by an iterator that knows its length.
     pub fn memory(triangles: usize) -> TracerMemory {
         TracerMemory::of(triangles)
     }
 
-    /// Adds an alpha test: `is_opaque(triangle, weights)` says whether a triangle, given by its index,
-    /// stops a ray, with the weights of its second and third corner at the hit.
+    /// Adds an alpha test. `is_opaque(triangle, weights)` returns whether a triangle, given by its index,
+    /// stops a ray. The weights belong to its second and third corner at the hit.
     #[must_use]
     pub fn with_alpha_test(mut self, is_opaque: impl Fn(u32, [f32; 2]) -> bool + Send + Sync + 'static) -> Self {
         self.alpha_test = Some(Arc::new(is_opaque));
         self
     }
 
-    /// Sets the triangles with holes, in place of those set before. Where there is an alpha test as well,
-    /// both must find the triangle opaque.
+    /// Sets the triangles with holes and replaces earlier ones. If there is also an alpha test, both must
+    /// find the triangle opaque.
     #[must_use]
     pub fn with_cut_outs(mut self, cut_outs: CutOuts) -> Self {
         self.cut_outs = cut_outs;
         self
     }
 
-    /// The triangles with holes.
+    /// Returns the triangles with holes.
     pub fn cut_outs(&self) -> &CutOuts {
         &self.cut_outs
     }
 
-    /// Whether there is an alpha test that only the CPU can run.
+    /// Returns whether there is an alpha test that only the CPU can run.
     #[cfg(feature = "gpu")]
     pub(crate) fn has_alpha_test(&self) -> bool {
         self.alpha_test.is_some()
     }
 
-    /// The hierarchy; none without triangles.
+    /// Returns the hierarchy; `None` without triangles.
     #[cfg(feature = "gpu")]
     pub(crate) fn bvh(&self) -> Option<&Bvh2> {
         self.bvh.as_ref()
     }
 
-    /// Number of triangles.
+    /// Returns the number of triangles.
     pub fn len(&self) -> usize {
         self.triangles.len()
     }
 
-    /// Whether there are none.
+    /// Returns whether there are no triangles.
     pub fn is_empty(&self) -> bool {
         self.triangles.is_empty()
     }
 
-    /// Corners of a triangle, world space, metres; all zero for one that was not finite.
+    /// Returns the corners of a triangle, world space, metres. All are zero if one was not finite.
     pub fn corners(&self, triangle: u32) -> [Vec3; 3] {
         self.triangles[triangle as usize].0
     }
 
-    /// Unit normal of a triangle by its winding, counter-clockwise seen from the front; zero for
-    /// one without area.
+    /// Returns the unit normal of a triangle by its winding, counter-clockwise seen from the front. Zero for
+    /// a triangle without area.
     pub fn normal(&self, triangle: u32) -> Vec3 {
         self.triangles[triangle as usize].triangle().compute_normal().into()
     }
 
-    /// Unit normal of a triangle's plane by its winding, in f64; zero for one without area.
+    /// Returns the unit normal of a triangle's plane by its winding, in f64. Zero for a triangle without
+    /// area.
     pub fn plane_normal(&self, triangle: u32) -> DVec3 {
         let [a, b, c] = self.corners(triangle).map(Vec3::as_dvec3);
         (b - a).cross(c - a).normalize_or_zero()
     }
 
-    /// Distance along a ray to the plane of the triangle that was hit, in f64; where that is not finite,
-    /// the distance that f32 found.
+    /// Computes the distance along a ray to the plane of the hit triangle, in f64. If it is not finite,
+    /// returns the f32 distance of the hit.
     pub fn refine(&self, hit: Hit, normal: DVec3, origin: DVec3, direction: DVec3) -> f64 {
         let corner = self.corners(hit.triangle)[0].as_dvec3();
         let distance = normal.dot(corner - origin) / normal.dot(direction);
         if distance.is_finite() { distance } else { f64::from(hit.distance) }
     }
 
-    /// The nearest triangle along a ray (world space, metres; any length of direction).
+    /// Returns the nearest triangle along a ray (world space, metres; direction of any length).
     pub fn first_hit(&self, origin: Vec3, direction: Vec3) -> Option<Hit> {
         self.first_hit_within(origin, direction, f32::INFINITY)
     }
 
-    /// The nearest triangle along a ray (world space, metres) that is nearer than `distance`, in lengths of its
-    /// direction.
+    /// Returns the nearest triangle along a ray (world space, metres), if it is nearer than `distance`, in
+    /// lengths of the ray's direction.
     pub fn first_hit_within(&self, origin: Vec3, direction: Vec3, distance: f32) -> Option<Hit> {
         let (bvh, ray) = self.ray(origin, direction, distance)?;
         let mut hit = RayHit::none();
@@ -185,33 +185,33 @@ impl Tracer {
             .then(|| Hit { distance: hit.t, triangle: bvh.primitive_indices[hit.primitive_id as usize] })
     }
 
-    /// Whether a ray (world space, metres) meets any triangle.
+    /// Returns whether a ray (world space, metres) hits any triangle.
     pub fn is_occluded(&self, origin: Vec3, direction: Vec3) -> bool {
         self.is_occluded_within(origin, direction, f32::INFINITY)
     }
 
-    /// Whether a ray (world space, metres) meets any triangle nearer than `distance`, in lengths of its direction: the
-    /// way to a light that has a position.
+    /// Returns whether a ray (world space, metres) hits any triangle nearer than `distance`, in lengths of
+    /// the ray's direction. For lights with a position.
     pub fn is_occluded_within(&self, origin: Vec3, direction: Vec3, distance: f32) -> bool {
         self.ray(origin, direction, distance).is_some_and(|(bvh, ray)| {
             !bvh.ray_traverse_miss(ray, |ray, slot| self.meet(ray, bvh.primitive_indices[slot]))
         })
     }
 
-    /// Every triangle along a ray (world space, metres), in no order.
+    /// Returns every triangle along a ray (world space, metres), in no particular order.
     pub fn all_hits(&self, origin: Vec3, direction: Vec3) -> Vec<Hit> {
         let mut hits = Vec::new();
         self.for_each_hit(origin, direction, |hit| hits.push(hit));
         hits
     }
 
-    /// Calls `visit` with every triangle along a ray (world space, metres), in no order.
+    /// Calls `visit` with every triangle along a ray (world space, metres), in no particular order.
     pub fn for_each_hit(&self, origin: Vec3, direction: Vec3, visit: impl FnMut(Hit)) {
         self.for_each_hit_within(origin, direction, f32::INFINITY, visit);
     }
 
-    /// Calls `visit` with every triangle along a ray (world space, metres) that is nearer than `distance`, in lengths of
-    /// its direction, in no order.
+    /// Calls `visit` with every triangle along a ray (world space, metres) that is nearer than `distance`, in
+    /// lengths of the ray's direction. In no particular order.
     pub fn for_each_hit_within(&self, origin: Vec3, direction: Vec3, distance: f32, mut visit: impl FnMut(Hit)) {
         let Some((bvh, ray)) = self.ray(origin, direction, distance) else { return };
         bvh.ray_traverse_anyhit(ray, |ray, slot| {
@@ -229,7 +229,7 @@ impl Tracer {
         Some((bvh, Ray::new(origin.into(), direction.into(), 0.0, distance)))
     }
 
-    /// Distance to a triangle along a ray, infinite for a miss or a cut-out.
+    /// Returns the distance to a triangle along a ray, infinite for a miss or a hole of a cut-out.
     fn meet(&self, ray: &Ray, index: u32) -> f32 {
         let triangle = &self.triangles[index as usize].triangle();
         let distance = triangle.intersect(ray);
@@ -243,12 +243,12 @@ impl Tracer {
     }
 }
 
-/// Corners of a triangle: a quarter less than the aligned ones that rays are tested against.
+/// Corners of a triangle, a quarter smaller than the aligned ones that rays are tested against.
 #[derive(Clone, Copy, Debug)]
 struct Corners([Vec3; 3]);
 
 impl Corners {
-    /// All zero if one of them is not finite.
+    /// Stores the corners, or zeros if one of them is not finite.
     fn new(corners: [Vec3; 3]) -> Self {
         let finite = corners.iter().all(|corner| corner.is_finite());
         Self(if finite { corners } else { [Vec3::ZERO; 3] })
@@ -269,7 +269,7 @@ impl Boundable for Corners {
 fn build(triangles: &[Corners]) -> Option<Bvh2> {
     let params = BvhBuildParams::medium_build();
     let mut bvh = (!triangles.is_empty()).then(|| build_bvh2(triangles, params))?;
-    // Drops what only the builder needs, and unused capacity.
+    // Drops the lists that only the builder needs, and unused capacity.
     bvh.parents = Vec::new();
     bvh.primitives_to_nodes = Vec::new();
     bvh.nodes.shrink_to_fit();
@@ -286,17 +286,17 @@ fn refit(bvh: &mut Bvh2, triangles: &[Corners]) {
     bvh.refit_all();
 }
 
-/// Cost of a ray through the hierarchy by the surface area heuristic: the expected number of boxes and
-/// triangles that it is tested against.
+/// Returns the cost of a ray through the hierarchy by the surface area heuristic: the expected number of
+/// boxes and triangles that it is tested against.
 fn cost(bvh: &Bvh2) -> f32 {
     let area = |node: &obvhs::bvh2::node::Bvh2Node| f64::from(node.aabb().half_area());
     let sum: f64 = bvh.nodes.iter().map(|node| area(node) * f64::from(node.prim_count.max(1))).sum();
     let whole = area(&bvh.nodes[0]);
-    // Without any area all hierarchies cost the same.
+    // If the whole has no area, all hierarchies cost the same.
     if whole == 0.0 { 0.0 } else { (sum / whole) as f32 }
 }
 
-/// Weights of the second and third corner at a hit, by areas.
+/// Returns the weights of the second and third corner at a hit, by areas.
 fn weights(triangle: &Triangle, ray: &Ray, distance: f32) -> [f32; 2] {
     let point = ray.origin + ray.direction * distance;
     let [edge1, edge2, to_point] = [triangle.v1, triangle.v2, point].map(|v| v - triangle.v0);
@@ -333,7 +333,7 @@ mod tests {
     fn a_ray_of_some_length_meets_what_is_nearer_and_nothing_beyond() {
         let tracer = Tracer::new([square_at(1.0), square_at(3.0)].concat());
         let origin = Vec3::new(0.3, 0.0, 0.1);
-        // Lengths of a direction of 2 m: the squares are 0.5 and 1.5 away.
+        // The direction is 2 m long, so the squares are 0.5 and 1.5 lengths away.
         for (distance, wanted) in [(0.4, 0), (0.6, 1), (1.4, 1), (1.6, 2)] {
             let mut met = 0;
             tracer.for_each_hit_within(origin, Vec3::Y * 2.0, distance, |_| met += 1);
@@ -353,7 +353,7 @@ mod tests {
         assert!(!tracer.is_occluded(Vec3::new(0.9, 0.0, 0.8), Vec3::Y));
     }
 
-    /// Small triangles in a row, a metre apart, in the order of `position`.
+    /// Returns small triangles in a row, a metre apart, ordered by `position`.
     fn row(position: impl Fn(u32) -> u32) -> Vec<[Vec3; 3]> {
         let at = |index: u32| Vec3::X * position(index) as f32;
         (0..500).map(|index| [Vec3::ZERO, Vec3::X * 0.5, Vec3::Y * 0.5].map(|corner| at(index) + corner)).collect()
@@ -376,17 +376,17 @@ mod tests {
         let slow_before = tracer.built_cost;
         tracer
             .set_triangles(row(|index| index).into_iter().map(|t| t.map(|v| v + Vec3::Y * v.x * 0.1)))
-            .expect("as many");
+            .expect("the same number");
         assert!(boxes_hold_their_triangles(&tracer));
         assert_eq!(tracer.built_cost, slow_before, "a small motion is refitted");
-        // Shuffled, neighbours of the hierarchy lie far apart: it is rebuilt.
-        tracer.set_triangles(row(|index| index * 211 % 500)).expect("as many");
+        // After shuffling, neighbours in the hierarchy lie far apart, and it is rebuilt.
+        tracer.set_triangles(row(|index| index * 211 % 500)).expect("the same number");
         let cost_now = cost(tracer.bvh.as_ref().expect("triangles"));
         assert!(boxes_hold_their_triangles(&tracer) && cost_now < slow_before * MAX_COST_GROWTH, "{cost_now}");
-        // Not finite, and finite again.
-        tracer.set_triangles(vec![[Vec3::NAN; 3]; 500]).expect("as many");
+        // First not finite, then finite again.
+        tracer.set_triangles(vec![[Vec3::NAN; 3]; 500]).expect("the same number");
         assert!(!tracer.is_occluded(Vec3::new(0.1, 0.1, 1.0), Vec3::NEG_Z));
-        tracer.set_triangles(row(|index| index)).expect("as many");
+        tracer.set_triangles(row(|index| index)).expect("the same number");
         assert!(boxes_hold_their_triangles(&tracer));
     }
 

@@ -1,7 +1,7 @@
-//! Whether the light reaches each pixel of a picture, by rays.
+//! Whether the light reaches each pixel of a picture, computed by rays.
 //!
-//! It depends on the scene, the camera and the light alone, so that it is traced once and any number
-//! of shadow maps are judged against it.
+//! The truth depends on the scene, the camera and the light only. It is traced once, and any number of shadow
+//! maps can be judged against it.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -13,34 +13,36 @@ use crate::light::{LightRay, LightRays, TruthLight};
 use crate::seen::{SeenPoint, seen_by_ray, seen_point};
 use crate::tracer::{Hit, Tracer};
 
-/// How truth is traced. World space, metres.
+/// Settings for tracing the truth. World space, metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TruthSettings {
     /// The light.
     pub light: TruthLight,
-    /// Shadow rays start this far along the geometric normal, in metres.
+    /// Offset of the shadow rays' start along the geometric normal, in metres.
     pub ray_offset: f64,
-    /// Greatest view depth that is judged: the shadow distance, in metres.
+    /// Greatest view depth at which pixels are judged (the shadow distance), in metres.
     pub max_distance: f64,
 }
 
 impl TruthSettings {
-    /// A hard sun, rays that start a millimetre above the surface, and no shadow distance: pixels are
-    /// judged at any view depth. `to_light` is the unit direction toward the light, world axes.
+    /// Returns settings for a hard sun, with rays that start a millimetre above the surface, and without a
+    /// shadow distance: pixels are judged at any view depth. `to_light` is the unit direction toward the
+    /// light, world axes.
     pub fn new(to_light: DVec3) -> Self {
         Self::of_light(TruthLight::sun(to_light))
     }
 
-    /// Any light, rays that start a millimetre above the surface, and no shadow distance.
+    /// Returns settings for any light, with rays that start a millimetre above the surface, and without a
+    /// shadow distance.
     pub fn of_light(light: TruthLight) -> Self {
         Self { light, ray_offset: 1e-3, max_distance: f64::INFINITY }
     }
 }
 
-/// What is seen at a pixel's centre. World space, metres.
+/// The visible point at a pixel's centre. World space, metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TruthPoint {
-    /// The point, on its triangle's plane.
+    /// Position of the point, on its triangle's plane.
     pub position: DVec3,
     /// Unit geometric normal on the side of the eye.
     pub normal: DVec3,
@@ -48,17 +50,17 @@ pub struct TruthPoint {
     pub facing: f64,
     /// Distance from the eye along the view, in metres.
     pub view_depth: f64,
-    /// Share of the rays that reach the light, 0..=1; 0 where the point is not judged.
+    /// Share of the rays that reach the light, 0..=1; 0 if the point is not judged.
     pub lit: f32,
     /// Index of the triangle.
     pub triangle: u32,
-    /// Whether the point is judged: it faces the light, is within the shadow distance, and inside of the light's image
-    /// where it has one.
+    /// Whether the point is judged: it faces the light, lies within the shadow distance, and lies inside of
+    /// the light's image if there is one.
     pub is_judged: bool,
 }
 
 impl TruthPoint {
-    /// Whether at least half of the light arrives; `None` where the point is not judged.
+    /// Returns whether at least half of the light arrives. `None` if the point is not judged.
     pub fn verdict(&self) -> Option<bool> {
         self.is_judged.then(|| counts_as_lit(self.lit))
     }
@@ -69,22 +71,22 @@ impl TruthPoint {
 pub struct Truth {
     /// Camera of the picture.
     pub camera: PixelCamera,
-    /// How it was traced.
+    /// Settings that were used for tracing.
     pub settings: TruthSettings,
-    /// What is seen at each pixel, rows from the top; `None` for the sky.
+    /// Visible point of each pixel, rows from the top; `None` for the sky.
     pub points: Vec<Option<TruthPoint>>,
     /// Squares of the distances to the nearest transition pixel.
     transition_squares: Vec<u32>,
 }
 
 impl Truth {
-    /// Traces the truth of a picture. `seen` is the triangle (index into the tracer's) that the
-    /// renderer's rasteriser drew at each pixel, rows from the top, `None` for the sky; an index
-    /// beyond the tracer's triangles counts as sky.
+    /// Traces the truth of a picture. `seen` is the triangle (index into the tracer's) that the renderer's
+    /// rasteriser drew at each pixel, rows from the top, or `None` for the sky. An index out of range counts
+    /// as sky.
     ///
-    /// The visible point is where the ray through the pixel's centre meets the triangle's plane. Its
-    /// view depth is clamped to that of the triangle's corners, since the ray may meet the plane of a
-    /// sliver that is seen edge-on anywhere.
+    /// The visible point is the intersection of the ray through the pixel's centre with the triangle's plane.
+    /// Its view depth is clamped to the range of the triangle's corners, because the ray may hit the plane of
+    /// an edge-on sliver anywhere.
     ///
     /// # Panics
     ///
@@ -93,8 +95,8 @@ impl Truth {
         Self::traced(tracer, camera, settings, seen, || true)
     }
 
-    /// As [`Self::trace`], for as long as `goes_on` says so, which is asked at every pixel; `None` as soon as it does
-    /// not. Once it has said no, it must not say yes again.
+    /// Traces the truth like [`Self::trace`], but can be cancelled. It calls `goes_on` at every pixel. Once
+    /// that returns false, it stops and returns `None`. From then on `goes_on` must not return true.
     ///
     /// # Panics
     ///
@@ -133,22 +135,22 @@ impl Truth {
         truth
     }
 
-    /// The nearest triangle at each pixel between the near and the far plane, by rays, for pictures
-    /// without a rasteriser. A ray whose nearest triangle is out of that range sees the sky.
+    /// Casts rays to find the nearest triangle at each pixel between the near and the far plane, for pictures
+    /// without a rasteriser. If the nearest triangle along a ray is out of that range, the pixel shows the
+    /// sky.
     pub fn seen_by_rays(tracer: &Tracer, camera: &PixelCamera) -> Vec<Option<u32>> {
         (0..camera.pixels()).into_par_iter().map(|pixel| seen_by_ray(tracer, camera, pixel)).collect()
     }
 
-    /// Whether at least half of the light reaches a pixel, given by its index in the rows from the
-    /// top; `None` where it is not judged.
+    /// Returns whether at least half of the light reaches a pixel, given by its index in rows from the top.
+    /// `None` if it is not judged.
     pub fn verdict(&self, pixel: usize) -> Option<bool> {
         self.points[pixel].as_ref()?.verdict()
     }
 
-    /// Distance, in pixels, from a pixel's centre to the nearest transition: a border between two
-    /// judged pixels, side by side or one above the other, whose verdicts differ. It is measured to
-    /// the centre of the nearest pixel with such a border, and half a pixel is added. Infinite without
-    /// a transition.
+    /// Returns the distance, in pixels, from a pixel's centre to the nearest transition: a border between two
+    /// judged pixels, side by side or one above the other, with different verdicts. It is the distance to the
+    /// centre of the nearest pixel with such a border, plus half a pixel. Infinite without a transition.
     pub fn transition_distance(&self, pixel: usize) -> f32 {
         match self.transition_squares[pixel] {
             NONE_MARKED => f32::INFINITY,
@@ -156,7 +158,7 @@ impl Truth {
         }
     }
 
-    /// Whether the distance to a transition is at most `width`, in pixels.
+    /// Returns whether the distance to a transition is at most `width`, in pixels.
     pub(crate) fn is_near_transition(&self, pixel: usize, width: f32) -> bool {
         is_within(self.transition_squares[pixel], width)
     }
@@ -167,7 +169,8 @@ impl Truth {
     }
 }
 
-/// Whether a pixel borders on one with another verdict, side by side or one above the other; both must be judged.
+/// Returns whether a judged pixel borders on a judged pixel with another verdict, side by side or one above
+/// the other.
 pub(crate) fn is_transition(
     [width, height]: [usize; 2],
     verdict: impl Fn([usize; 2]) -> Option<bool>,
@@ -181,16 +184,17 @@ pub(crate) fn is_transition(
         || (y + 1 < height && differs(x, y + 1))
 }
 
-/// Whether the square of a distance to a transition is that of at most `width` pixels.
+/// Returns whether the squared distance to a transition means at most `width` pixels.
 ///
-/// In f32 and without a root: the whole square is compared with that of `width` less half a pixel,
-/// so that another implementation, such as the GPU's, finds exactly the same pixels.
+/// It works in f32 and without a root: it compares the square with the square of `width` less half a pixel.
+/// Another implementation, such as the GPU's, thus finds exactly the same pixels.
 pub(crate) fn is_within(square: u32, width: f32) -> bool {
     let reach = width - 0.5;
     square != NONE_MARKED && square as f32 <= reach * reach
 }
 
-/// What a pixel shows of a triangle, and how much light reaches it. `rays` are those of the settings' light.
+/// Returns the point of a triangle that a pixel shows, and how much light reaches it. `rays` are the rays of
+/// the settings' light.
 pub(crate) fn point(
     tracer: &Tracer,
     camera: &PixelCamera,
@@ -210,11 +214,11 @@ pub(crate) fn point(
     point
 }
 
-/// Something between a point and the light.
+/// An occluder between a point and the light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Occluder {
-    /// Where it is met, moved onto the straight way from the point itself to the light: rays start above the surface.
-    /// World space, metres.
+    /// Intersection, moved onto the straight line from the point to the light, because rays start above the
+    /// surface. World space, metres.
     pub position: DVec3,
     /// Distance from the ray's start along the ray toward the light, in metres.
     pub distance: f64,
@@ -223,8 +227,8 @@ pub struct Occluder {
 }
 
 impl TruthSettings {
-    /// A ray from a shadowed point that is blocked: the one toward the light's centre, or the first blocked one where
-    /// that one is free.
+    /// Returns a blocked ray of a shadowed point: the ray toward the light's centre, or the first blocked ray
+    /// if that one is free.
     fn blocked_ray(&self, tracer: &Tracer, origin: DVec3, pixel: usize) -> LightRay {
         let (centre, rays) = (self.light.ray_from(origin), self.light.rays());
         if rays.count() == 1 || is_blocked(tracer, origin, &centre) {
@@ -233,7 +237,7 @@ impl TruthSettings {
         rays.from(origin, pixel).find(|ray| is_blocked(tracer, origin, ray)).unwrap_or(centre)
     }
 
-    /// Calls `visit` with every occluder of a judged point along a ray that is blocked, in no order.
+    /// Calls `visit` with every occluder of a judged point along a blocked ray, in no particular order.
     pub(crate) fn for_each_occluder(
         &self,
         tracer: &Tracer,
@@ -245,7 +249,7 @@ impl TruthSettings {
         let LightRay { direction, length } = self.blocked_ray(tracer, origin, pixel);
         tracer.for_each_hit_within(origin.as_vec3(), direction.as_vec3(), length as f32, |hit: Hit| {
             let distance = tracer.refine(hit, tracer.plane_normal(hit.triangle), origin, direction);
-            // The offset shrinks toward a light with a position, and stays the same toward a sun.
+            // Toward a light with a position the offset shrinks; toward a sun it is constant.
             let offset = (point.position - origin) * (1.0 - distance / length);
             let position = origin + direction * distance + offset;
             visit(Occluder { position, distance, triangle: hit.triangle });
@@ -253,18 +257,18 @@ impl TruthSettings {
     }
 }
 
-/// Where the shadow rays of a point start.
+/// Returns the start of a point's shadow rays.
 fn ray_origin(settings: &TruthSettings, point: &TruthPoint) -> DVec3 {
     point.position + point.normal * settings.ray_offset
 }
 
-/// Share of the rays from a point that reach the light.
+/// Returns the share of a point's rays that reach the light.
 fn lit_share(tracer: &Tracer, rays: &LightRays, origin: DVec3, pixel: usize) -> f32 {
     let free = rays.from(origin, pixel).filter(|ray| !is_blocked(tracer, origin, ray)).count();
     free as f32 / rays.count() as f32
 }
 
-/// Whether anything stands on the way to the light.
+/// Returns whether any triangle blocks a ray to the light.
 pub(crate) fn is_blocked(tracer: &Tracer, origin: DVec3, ray: &LightRay) -> bool {
     tracer.is_occluded_within(origin.as_vec3(), ray.direction.as_vec3(), ray.length as f32)
 }

@@ -1,16 +1,16 @@
-//! A tracer's estimated memory against the allocator. A program of its own: it replaces the
+//! A tracer's estimated memory, compared with the allocator. It is a separate program because it replaces the
 //! allocator.
 
 use allocation_counter::measure;
 use glam::Vec3;
 use shadowfit_truth::Tracer;
 
-/// Right triangles a metre wide.
+/// Returns a right triangle with legs of a metre.
 fn at(corner: Vec3) -> [Vec3; 3] {
     [corner, corner + Vec3::X, corner + Vec3::Z]
 }
 
-/// A hilly ground of `count` triangles side by side.
+/// Returns a hilly ground of `count` triangles side by side.
 fn ground(count: u32) -> impl ExactSizeIterator<Item = [Vec3; 3]> {
     let side = f64::from(count).sqrt().ceil() as u32;
     (0..count).map(move |index| {
@@ -19,7 +19,7 @@ fn ground(count: u32) -> impl ExactSizeIterator<Item = [Vec3; 3]> {
     })
 }
 
-/// `count` triangles anywhere in a cube of a kilometre.
+/// Returns `count` triangles anywhere in a cube of a kilometre.
 fn soup(count: u32) -> impl ExactSizeIterator<Item = [Vec3; 3]> {
     (0..count).map(|index| {
         let hash = index.wrapping_mul(2_654_435_761);
@@ -27,7 +27,7 @@ fn soup(count: u32) -> impl ExactSizeIterator<Item = [Vec3; 3]> {
     })
 }
 
-/// Bytes at most, and afterwards.
+/// Measures the peak bytes, and the bytes afterwards.
 fn measured(triangles: impl Iterator<Item = [Vec3; 3]>) -> [f64; 2] {
     let mut tracer = None;
     let counted = measure(|| tracer = Some(Tracer::new(triangles)));
@@ -44,7 +44,7 @@ fn memory_is_estimated_within_a_factor_of_one_and_a_half() {
                 let ratio = found / estimate;
                 assert!(
                     (1.0 / 1.5..=1.5).contains(&ratio),
-                    "{name} of {count}: {found} bytes, {estimate} were estimated"
+                    "{name} of {count}: {found} bytes, but the estimate is {estimate}"
                 );
             }
         }

@@ -21,24 +21,24 @@ use crate::scene_source::{OPTION_PREFIX, SceneSource};
 #[command(
     name = "viewer",
     version,
-    after_help = "Press H in the window for its keys. Exit codes: 0, 1 where --check found a fault, or 2 where something was \
-                  refused or cannot be done."
+    after_help = "Press H in the window for its keys. Exit codes: 0; 1 if --check found a fault; 2 if something was \
+                  rejected or failed."
 )]
 pub struct Arguments {
-    /// Scene: a glTF file (.gltf or .glb), or one of the built-in scenes courtyard, plain, arcade and forest. Without one
-    /// the viewer opens the scene of the last time, and the courtyard at first.
+    /// Scene: a glTF file (.gltf or .glb), or one of the built-in scenes courtyard, plain, arcade, forest and town.
+    /// Default: the last scene, at first the courtyard.
     pub scene: Option<PathBuf>,
 
-    /// Shows a classic technique by its name, e.g. `xna-shadow-mapping`, or after a slash one of its variants; `list`
-    /// prints them all and quits.
+    /// Shows a classic technique by its name, e.g. `xna-shadow-mapping`, optionally with a variant after a
+    /// slash; `list` prints all of them and quits.
     #[arg(long, value_name = "NAME", conflicts_with = "scene")]
     pub sample: Option<String>,
 
-    /// Index of the scene in the file; its default scene if not given.
+    /// Index of the scene in the file. Default: the file's default scene.
     #[arg(long, value_name = "INDEX")]
     pub scene_index: Option<usize>,
 
-    /// Index of the animation that plays.
+    /// Index of the animation to play.
     #[arg(long, value_name = "INDEX", default_value_t = 0)]
     pub animation: usize,
 
@@ -46,22 +46,22 @@ pub struct Arguments {
     #[arg(long, value_name = "DIR")]
     pub headless: Option<PathBuf>,
 
-    /// Size of the window or of the pictures, in pixels. If not given, 1280x720, or for pictures of a sample the size of
-    /// its source's window.
+    /// Size of the window or of the pictures, in pixels. Default: 1280x720, or for pictures of a sample the
+    /// window size of its source.
     #[arg(long, value_name = "WIDTHxHEIGHT", value_parser = parse_size)]
     pub size: Option<[u32; 2]>,
 
-    /// Starts with a technique: a preset by its name, e.g. `stable-4`, or a .toml file, e.g. from the tuner.
+    /// Starts with a technique: a preset name, e.g. `stable-4`, or a .toml file, e.g. from the tuner.
     #[arg(long, value_name = "NAME|FILE.toml")]
     pub technique: Option<String>,
 
-    /// Sets a parameter, e.g. `--set bias.normal_offset=1.5`; `--parameters` lists them. An option of a sample is set with
-    /// `sample.` before its name, e.g. `--set sample.bias=0`.
+    /// Sets a parameter, e.g. `--set bias.normal_offset=1.5`; `--parameters` lists them. For an option of a
+    /// sample, put `sample.` before its name, e.g. `--set sample.bias=0`.
     #[arg(long = "set", value_name = "ID=VALUE")]
     pub set: Vec<String>,
 
-    /// Opens what a link of a viewer shows: the URL, or its fragment from the `#` on. It wins over what was saved and over
-    /// other arguments.
+    /// Opens a link of a viewer: the URL, or its fragment from the `#` on. It overrides saved settings and
+    /// all other arguments.
     #[arg(long, value_name = "URL|FRAGMENT")]
     pub link: Option<String>,
 
@@ -69,8 +69,8 @@ pub struct Arguments {
     #[arg(long)]
     pub parameters: bool,
 
-    /// Plays a script of actions, one per line; `--actions` lists them. With `--headless` it is played instead of rendering
-    /// the picture set, and saves its files into that folder.
+    /// Plays a script of actions, one per line; `--actions` lists them. With `--headless` the script replaces
+    /// the picture set, and its files go into that folder.
     #[arg(long, value_name = "FILE")]
     pub script: Option<PathBuf>,
 
@@ -78,11 +78,11 @@ pub struct Arguments {
     #[arg(long)]
     pub actions: bool,
 
-    /// Keeps settings, camera and bookmarks in this file instead of the user's own one.
+    /// Stores settings, camera and bookmarks in this file instead of the user's own file.
     #[arg(long, value_name = "FILE", conflicts_with = "no_state")]
     pub state: Option<PathBuf>,
 
-    /// Restores no settings of the last time, and saves none.
+    /// Does not restore or save settings.
     #[arg(long)]
     pub no_state: bool,
 
@@ -94,22 +94,23 @@ pub struct Arguments {
     #[command(flatten)]
     pub adapter: AdapterOptions,
 
-    /// Prints a table to the standard error at the end: the time of each step of the start and of each line of the script.
+    /// Prints a table to the standard error at the end: the time of each start step and of each line of the
+    /// script.
     #[arg(long, requires_all = ["headless", "script"])]
     pub timings: bool,
 
-    /// Checks the graphics device, in a minute or less on a GPU, instead of opening a window: its maps, look-ups, passes and rays
-    /// against the same on the CPU. Prints a report for an issue, and ends with exit code 1 if a check fails. Takes no other
-    /// options than those of the adapter.
+    /// Checks the graphics device instead of opening a window, in a minute or less on a GPU: compares its
+    /// maps, look-ups, passes and rays with the CPU's. Prints a report for an issue, and ends with exit code
+    /// 1 if a check fails. Only the adapter options can be combined with it.
     #[arg(long, conflicts_with_all = NOT_WITH_CHECK)]
     pub check: bool,
 
-    /// Prints to the standard error when the window is ready, and the frame time now and then.
+    /// Prints a line to the standard error when the window is ready, and the frame time at intervals.
     #[arg(long)]
     pub log_frames: bool,
 }
 
-/// Arguments that mean nothing to a check of the graphics device: all except those of the adapter.
+/// Arguments that cannot be combined with a device check: all except the adapter options.
 const NOT_WITH_CHECK: [&str; 17] = [
     "scene",
     "sample",
@@ -130,10 +131,11 @@ const NOT_WITH_CHECK: [&str; 17] = [
     "log_frames",
 ];
 
-/// Size of the window, and of pictures, if not given, in pixels.
+/// Default size of the window and of pictures, in pixels.
 const SIZE: [u32; 2] = [1280, 720];
 
-/// Parses the process's arguments; ends the process after help, version or a list, and after wrong arguments.
+/// Parses the process's arguments. Ends the process after help, version or a list, and after invalid
+/// arguments.
 pub(crate) fn parse() -> Arguments {
     let arguments = Arguments::parse();
     let list = if arguments.parameters {
@@ -151,7 +153,7 @@ pub(crate) fn parse() -> Arguments {
 }
 
 impl Arguments {
-    /// The scene that the arguments name, if any.
+    /// Returns the scene in the arguments, if any.
     pub(crate) fn source(&self) -> Result<Option<SceneSource>> {
         if let Some(name) = &self.sample {
             let unknown = || anyhow!("--sample {name}: there is no such sample; `viewer --sample list` lists them");
@@ -165,48 +167,48 @@ impl Arguments {
         named.unwrap_or_default().with_index(self.scene_index).map(Some)
     }
 
-    /// Returns the parameters that are set, by id, with their values as text.
+    /// Returns the parameters to set, by id, with their values as text.
     pub(crate) fn settings(&self) -> impl Iterator<Item = (&str, &str)> {
         self.set.iter().filter_map(|assignment| assignment.split_once('=')).map(|(id, value)| (id.trim(), value.trim()))
     }
 
-    /// The options of a sample that are set, by name.
+    /// Returns the options of a sample to set, by name.
     pub(crate) fn sample_options(&self) -> impl Iterator<Item = (&str, &str)> {
         let options = self.set.iter().filter_map(|assignment| assignment.trim().strip_prefix(OPTION_PREFIX));
         options.map(|option| option.split_once('=').unwrap_or((option, ""))).map(|(id, text)| (id.trim(), text.trim()))
     }
 
-    /// The script that the arguments name; nothing without one.
+    /// Reads the script in the arguments. Returns no lines without one.
     pub(crate) fn lines(&self) -> Result<Vec<Line>> {
         Ok(self.script.as_deref().map(script::read).transpose()?.unwrap_or_default())
     }
 
-    /// Size of the window or of pictures, in pixels.
+    /// Returns the size of the window or of pictures, in pixels.
     pub fn size(&self) -> [u32; 2] {
         self.size.unwrap_or(SIZE)
     }
 
-    /// The adapter that the arguments ask for.
+    /// Returns the requested adapter.
     pub fn adapter(&self) -> AdapterChoice {
         self.adapter.choice()
     }
 
-    /// Applies the `--technique`, `--set` and `--no-play` arguments, in this order. A preset keeps the shadow distance
-    /// and the caster extension of the settings, which suit the scene; a file has its own. Returns the technique that was
-    /// opened.
+    /// Applies the `--technique`, `--set` and `--no-play` arguments, in this order. A preset keeps the shadow
+    /// distance and the caster extension of the settings, which suit the scene; a file has its own. Returns
+    /// the opened technique.
     ///
     /// # Errors
     ///
-    /// If there is no such technique or parameter, or a value is not possible.
+    /// If the technique or a parameter does not exist, or a value is invalid.
     pub fn apply(&self, settings: &mut Settings) -> Result<Option<NamedTechnique>> {
         self.apply_unless(settings, |_| false)
     }
 
-    /// As [`Self::apply`], but ignores values of parameters that do not exist under these settings.
+    /// Like [`Self::apply`], but ignores values of parameters that do not exist under these settings.
     ///
     /// # Errors
     ///
-    /// If there is no such technique or parameter, or a value is possible with none.
+    /// If the technique or a parameter does not exist, or a value is invalid under any settings.
     pub(crate) fn apply_what_is_there(&self, settings: &mut Settings) -> Result<Option<NamedTechnique>> {
         self.apply_unless(settings, |error| matches!(error, ParameterError::NotPresent { .. }))
     }
@@ -237,12 +239,12 @@ impl Arguments {
     }
 }
 
-/// A preset by its name, with the lengths of the present technique, which suit the scene; or the technique of a file, as
-/// it is.
+/// Returns a preset by its name, with the shadow distance and caster extension of the current technique,
+/// which suit the scene; or the technique of a file, unchanged.
 ///
 /// # Errors
 ///
-/// If there is no such preset, or the file cannot be read or makes no sense.
+/// If the preset does not exist, or the file cannot be read or is invalid.
 pub(crate) fn find_technique(text: &str, now: &Technique) -> Result<NamedTechnique> {
     let mut named = NamedTechnique::find(text)?;
     if NamedTechnique::preset(text).is_some() {
@@ -251,7 +253,8 @@ pub(crate) fn find_technique(text: &str, now: &Technique) -> Result<NamedTechniq
     Ok(named)
 }
 
-/// Refuses an animation that a scene does not have; the first one is the default and is accepted for a scene without any.
+/// Rejects an animation that a scene lacks. The first one is the default, and is accepted for a scene without
+/// animations.
 pub(crate) fn check_animation(animation: usize, animations: usize, scene: &str) -> Result<()> {
     if animation < animations.max(1) {
         return Ok(());
@@ -273,7 +276,7 @@ fn parameter_list() -> String {
     let mut list = String::new();
     for parameter in params::PARAMETERS {
         let value = params::format_value(&defaults, parameter);
-        // A parameter that exists only with a choice of another one has no value until then.
+        // A parameter that exists only with a choice of another one has no default value.
         let value = if parameter.is_present(&defaults) { format!("={value}") } else { String::new() };
         // Writing to a String cannot fail.
         let _ = writeln!(list, "{}{value}  ({})\n    {}", parameter.id, range(parameter), parameter.help);
@@ -309,7 +312,7 @@ fn action_list() -> String {
     list
 }
 
-/// The possible values of a parameter.
+/// Returns the possible values of a parameter.
 fn range(parameter: &Parameter) -> String {
     match &parameter.kind {
         Kind::Number(Number { min, max, unset, .. }) => {

@@ -1,4 +1,4 @@
-//! What a fuzzer takes for the viewer's files; no build but its own and that of the tests has this.
+//! Targets for fuzzing the viewer's files. Only fuzzing and test builds contain them.
 
 #[cfg(test)]
 #[path = "../../../tests/fuzz/src/corpus.rs"]
@@ -8,24 +8,24 @@ use crate::keep::link::Link;
 use crate::keep::saved::Saved;
 use crate::play::script;
 
-/// Reads what the viewer saved: it is refused, or written so that it reads back the same.
+/// Parses saved state: the text is either rejected, or written so that it reads back the same.
 ///
 /// # Panics
 ///
-/// When it is neither.
+/// If the state does not read back the same.
 pub fn saved_toml(data: &[u8]) {
     let Ok(text) = std::str::from_utf8(data) else { return };
     let Ok(saved) = Saved::from_toml(text) else { return };
-    let written = saved.to_toml().expect("what was read can be written");
+    let written = saved.to_toml().expect("parsed state can be written");
     let read = Saved::from_toml(&written).unwrap_or_else(|error| panic!("{error:#}: {written}"));
     assert_eq!(read, saved, "{written}");
 }
 
-/// Reads a script, and each of its lines as a link.
+/// Parses a script, and each of its lines as a link.
 ///
 /// # Panics
 ///
-/// When a link does not come back from its own text.
+/// If a link cannot be read back from its own text.
 pub fn script(data: &[u8]) {
     let Ok(text) = std::str::from_utf8(data) else { return };
     let _ = script::lines("fuzzed", text);

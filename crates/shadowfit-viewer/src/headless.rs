@@ -1,4 +1,4 @@
-//! Frames without a window: the picture set, and scripts.
+//! Rendering without a window: the picture set, and scripts.
 
 mod album;
 pub(crate) mod device_check;
@@ -29,8 +29,8 @@ const FRAME: f32 = 1.0 / 60.0;
 /// Format of headless frames.
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
-/// Renders the pictures that the arguments ask for and prints each one's name when it is written. Notes of the import go
-/// to the standard error. Nothing is restored from the last time, and nothing is saved for the next one.
+/// Renders the requested pictures, and prints each name when its file is written. Notes of the import go to
+/// the standard error. No state is restored or saved.
 pub(crate) fn run(arguments: &Arguments, folder: &Path) -> Result<()> {
     make_folder(folder)?;
     if arguments.script.is_some() {
@@ -59,7 +59,7 @@ pub(crate) fn run(arguments: &Arguments, folder: &Path) -> Result<()> {
     progress.end()
 }
 
-/// Loads the scene that the arguments name.
+/// Loads the scene in the arguments.
 ///
 /// # Errors
 ///
@@ -70,7 +70,7 @@ fn load_scene(arguments: &Arguments) -> Result<Scene> {
     Ok(scene)
 }
 
-/// egui's input for a window of a size in pixels, at a time in seconds.
+/// Returns egui's input for a window of a size in pixels, at a time in seconds.
 fn input(size: [u32; 2], clock: f64) -> RawInput {
     RawInput {
         screen_rect: Some(Rect::from_min_size(Pos2::ZERO, vec2(size[0] as f32, size[1] as f32))),

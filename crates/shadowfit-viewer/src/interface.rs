@@ -1,4 +1,4 @@
-//! Picture, bars and panel laid out by egui, the same in the window and in headless pictures.
+//! Picture, bars and panel, laid out by egui in the same way in the window and in headless pictures.
 
 mod bar;
 mod narrow;
@@ -22,7 +22,7 @@ use paint::Painter;
 pub(crate) use paint::{Canvas, Layout, red_first};
 pub(crate) use picture::Pictures;
 
-/// egui, the panel, and the pictures between them.
+/// egui, the panel, and the pictures between the bars.
 #[expect(clippy::struct_excessive_bools, reason = "each is a state of the window of its own")]
 pub(crate) struct Interface {
     pub(crate) context: egui::Context,
@@ -30,9 +30,9 @@ pub(crate) struct Interface {
     panel: Panel,
     pub(crate) pictures: Pictures,
     pub(crate) help_open: bool,
-    /// Whether the panel lies over the picture, in a narrow window.
+    /// Whether the panel is open over the picture, in a narrow window.
     pub(crate) drawer_open: bool,
-    /// Whether what can be pressed is as high as fingers need.
+    /// Whether controls are high enough for fingers.
     is_touched: bool,
     /// Whether bars and panel are hidden.
     pub(crate) bare: bool,
@@ -45,28 +45,28 @@ pub(crate) struct Interface {
     figures: Figures,
 }
 
-/// State that the interface shows besides the stage.
+/// State outside the stage that the interface shows.
 pub(crate) struct InterfaceInput<'a> {
     pub(crate) saved: &'a Saved,
     pub(crate) presets: &'a [UserPreset],
     pub(crate) tune: Tune<'a>,
-    /// The report of the check of the graphics device, while its dialog is open.
+    /// The report of the device check, while its dialog is open.
     pub(crate) device_check: Option<&'a CheckReport>,
-    /// The figures of the sample that is shown.
+    /// The figures of the current sample.
     pub(crate) sample_figures: &'a [CardFigure],
     pub(crate) changes: Changes<'a>,
     /// A message, such as where a screenshot was saved.
     pub(crate) message: Option<&'a str>,
-    /// The scene that is being loaded, and the share of it that is loaded.
+    /// Name of the scene that is loading, and the loaded share.
     pub(crate) loading: Option<(&'a str, f32)>,
-    /// Whether the view of an artefact is being searched.
+    /// Whether a search for the view of an artefact is running.
     pub(crate) is_searching: bool,
-    /// Whether there is a scene to show.
+    /// Whether a scene has been loaded.
     pub(crate) has_scene: bool,
 }
 
 impl<'a> InterfaceInput<'a> {
-    /// A scene without background work or messages.
+    /// Returns the input for a scene without background work or messages.
     pub(crate) fn at_rest(saved: &'a Saved) -> Self {
         Self {
             saved,
@@ -89,17 +89,18 @@ pub(crate) struct InterfaceOutput {
     pub(crate) commands: Vec<Command>,
     /// Mouse drag over the picture, in pixels.
     pub(crate) drag: Vec2,
-    /// How two fingers moved on the picture, in points, and the logarithm of the factor by which they came apart.
+    /// Movement of two fingers on the picture, in points, and the logarithm of the factor by which their
+    /// distance grew.
     pub(crate) pan: Vec2,
     pub(crate) pinch: f32,
     /// Wheel notches over the picture.
     pub(crate) wheel: f32,
-    /// Where the pointer rests on the picture, as shares of its width and height from the top left.
+    /// Position of the resting pointer on the picture, as shares of its width and height from the top left.
     pub(crate) hover: Option<[f32; 2]>,
 }
 
 impl Interface {
-    /// An interface that is painted to a surface of the given format.
+    /// Makes an interface that is painted to a surface of the given format.
     pub(crate) fn new(stage: &Stage, format: wgpu::TextureFormat) -> Self {
         let context = egui::Context::default();
         shadowfit_egui::apply_theme(&context, egui::ThemePreference::Dark);
@@ -123,27 +124,27 @@ impl Interface {
         interface
     }
 
-    /// Sets the settings to which resets go back: those that a scene was opened with.
+    /// Sets the settings that resets restore: the initial settings of the scene.
     pub(crate) fn scene_changed(&mut self, stage: &Stage) {
         self.panel.defaults = stage.home_settings();
         self.edits_other = false;
     }
 
-    /// Goes on with the device of a stage that has [moved](Stage::move_to), and a surface of a format.
+    /// Continues with the device of a stage that has [moved](Stage::move_to), and with a surface of a format.
     pub(crate) fn move_to(&mut self, stage: &Stage, format: wgpu::TextureFormat) {
         self.painter = Painter::new(&stage.gpu().device, format);
         self.pictures.move_to(stage, &mut self.painter);
         self.format = format;
-        // egui sends the whole texture of its fonts again only when it loads them anew. No providers are used.
+        // egui uploads its whole font texture again only after it reloads the fonts. No providers are used.
         self.context.set_font_providers(Vec::new());
     }
 
-    /// Format of the surface that it is painted to.
+    /// Returns the format of the surface.
     pub(crate) fn format(&self) -> wgpu::TextureFormat {
         self.format
     }
 
-    /// The panel, which keeps the plotted figures.
+    /// Returns the panel, which stores the plotted figures.
     pub(crate) fn panel(&mut self) -> &mut Panel {
         &mut self.panel
     }
@@ -169,7 +170,7 @@ impl Interface {
         (output, Layout { jobs, pixels_per_point: full.pixels_per_point }, full.platform_output)
     }
 
-    /// Paints a frame that was laid out to `target` of `size` pixels.
+    /// Paints a laid out frame to `target` of `size` pixels.
     pub(crate) fn paint(&mut self, stage: &Stage, layout: &Layout, target: &wgpu::TextureView, size: [u32; 2]) {
         self.painter.paint(stage.gpu(), layout, target, size);
     }
@@ -191,7 +192,7 @@ impl Interface {
                 });
             }
         }
-        // The drawer hides it.
+        // The drawer covers the legend.
         let has_legend = !self.drawer_open;
         let figures = Some(&self.figures).filter(|_| has_legend);
         let picture = CentralPanel::default()

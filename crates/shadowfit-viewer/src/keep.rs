@@ -1,4 +1,4 @@
-//! State as text: the viewer's own file, links, command lines and pictures bring back earlier views, as undo does.
+//! State as text: the viewer's own file, links, command lines and pictures. Also undo.
 
 pub(crate) mod command_line;
 #[cfg(test)]

@@ -1,7 +1,7 @@
-//! The shadowfit viewer as a library: a [`Stage`] that holds scene, camera and settings, and fits, draws and judges
-//! through `shadowfit-study`; the artefact demonstrations; a window around it, and a headless mode that renders the
-//! same views to files. `examples/viewer` is its thin main. In a browser it is the module of a page, whose files lie in
-//! `web`: see `src/web.rs`.
+//! The shadowfit viewer as a library: a [`Stage`] that holds scene, camera and settings, and fits, draws and
+//! judges with `shadowfit-study`; the artefact demonstrations; a window; and a headless mode that renders the
+//! same views to files. `examples/viewer` is its thin main. In a browser it is the module of a page, whose
+//! files are in `web`: see `src/web.rs`.
 //!
 //! Each room of the crate uses only rooms below it:
 //!
@@ -53,8 +53,9 @@ pub use headless::{PICTURES, render_pictures};
 pub use shadowfit_egui::Artefact;
 pub use stage::{Shown, Stage, StageError};
 
-/// Runs the viewer with the process's arguments: the window, with `--headless` the pictures, or with `--check` the check of
-/// the graphics device, whose failure is exit code 1. Errors are printed to the standard error, with exit code 2.
+/// Runs the viewer with the process's arguments: the window, with `--headless` the pictures, or with
+/// `--check` the device check, whose failure is exit code 1. Errors are printed to the standard error, with
+/// exit code 2.
 #[cfg(not(target_family = "wasm"))]
 pub fn main() -> ExitCode {
     let arguments = arguments::parse();

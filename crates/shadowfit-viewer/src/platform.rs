@@ -1,5 +1,5 @@
-//! The system around the viewer, by the same names in a window and in a browser. Only this room and the mains know which
-//! of the two they run in.
+//! The system around the viewer, with the same names in a window and in a browser. Only this module and the
+//! mains differ between the two.
 
 pub(crate) mod output;
 #[cfg(target_family = "wasm")]
@@ -19,14 +19,14 @@ pub(crate) use window::{
 /// Whether the viewer runs in a browser, which has no threads and cannot wait for the GPU within a frame.
 pub(crate) const IS_PAGE: bool = cfg!(target_family = "wasm");
 
-/// Progress of a step that keeps the viewer busy, so that a page draws its bar meanwhile.
+/// Progress of a step that keeps the viewer busy, for a bar that the page draws meanwhile.
 #[cfg_attr(not(target_family = "wasm"), expect(dead_code, reason = "a window draws the bar itself"))]
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct BusyBar {
-    /// Share that is done now, 0..=1.
+    /// Share finished at the start, 0..=1.
     pub(crate) from: f32,
-    /// Share at the end of the step.
+    /// Share finished at the end of the step.
     pub(crate) to: f32,
-    /// Time that the step takes, in seconds.
+    /// Expected duration of the step, in seconds.
     pub(crate) seconds: f32,
 }

@@ -1,4 +1,4 @@
-//! Where a scene comes from.
+//! The source of a scene.
 
 use std::path::{Path, PathBuf};
 
@@ -27,7 +27,7 @@ impl Default for SceneSource {
 }
 
 impl SceneSource {
-    /// The source that a text names: a built-in scene or a sample by its name, or a file.
+    /// Returns the source that a text names: a built-in scene or a sample by its name, or a file.
     pub(crate) fn from_text(text: &str) -> Self {
         if Path::new(text).is_file() {
             return Self::file(text);
@@ -36,19 +36,19 @@ impl SceneSource {
         built_in.or_else(|| Self::sample(text)).unwrap_or_else(|| Self::file(text))
     }
 
-    /// A sample by its name, with that of a variant behind a slash.
+    /// Returns a sample by its name, optionally with a variant after a slash.
     pub(crate) fn sample(name: &str) -> Option<Self> {
         Sample::find_with_variant(name).map(|(sample, variant)| Self::Sample { sample, variant })
     }
 
-    /// A file, by a path that names the same one whatever the working folder is.
+    /// Returns a file by its absolute path, which does not depend on the working folder.
     pub(crate) fn file(path: impl Into<PathBuf>) -> Self {
         let path = path.into();
-        // An empty path has no absolute one, and cannot be loaded either. In browsers files have names alone.
+        // An empty path has no absolute form, and cannot be loaded either. In browsers files only have names.
         Self::File { path: std::path::absolute(&path).unwrap_or(path), index: None }
     }
 
-    /// The same with one of the file's scenes.
+    /// Returns the source with one of the file's scenes.
     ///
     /// # Errors
     ///
@@ -57,11 +57,11 @@ impl SceneSource {
         match (self, index) {
             (Self::File { path, .. }, index) => Ok(Self::File { path, index }),
             (own, None | Some(0)) => Ok(own),
-            (_, Some(index)) => bail!("--scene-index {index}: a built-in scene is the only one; name a file"),
+            (_, Some(index)) => bail!("--scene-index {index}: a built-in scene has only scene 0; name a file"),
         }
     }
 
-    /// Index of the file's scene; `None` for its default one and for a built-in scene.
+    /// Returns the index of the file's scene; `None` for its default one and for a built-in scene.
     pub(crate) fn index(&self) -> Option<usize> {
         match self {
             Self::BuiltIn(_) | Self::Sample { .. } => None,
@@ -69,7 +69,7 @@ impl SceneSource {
         }
     }
 
-    /// The text that [`Self::from_text`] reads, without [`Self::index`].
+    /// Returns the text that [`Self::from_text`] reads, without [`Self::index`].
     pub(crate) fn text(&self) -> String {
         match self {
             Self::BuiltIn(scene) => scene.id().to_owned(),
@@ -79,7 +79,7 @@ impl SceneSource {
         }
     }
 
-    /// Its name for people.
+    /// Returns the name for people.
     pub(crate) fn label(&self) -> String {
         match self {
             Self::BuiltIn(scene) => scene.label().to_owned(),

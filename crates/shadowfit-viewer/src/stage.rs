@@ -1,5 +1,5 @@
-//! The stage: all that the viewer shows, without a window: scene, camera, settings, animation, artefact, and one
-//! technique or two.
+//! The stage: everything that the viewer draws, without a window: scene, camera, settings, animation,
+//! artefact, and one or two techniques.
 
 pub(crate) mod artefact;
 mod boards;
@@ -47,7 +47,7 @@ pub use shown::Shown;
 pub(crate) use shown::{ArtefactShow, changes};
 use side::Side;
 
-/// Why a stage could not be set up.
+/// Reason why a stage could not be set up.
 #[derive(Clone, Debug, PartialEq)]
 pub enum StageError {
     /// The scene has no triangles to draw, or the device has no memory for it.
@@ -82,13 +82,13 @@ impl From<ShadowMapError> for StageError {
 /// Scene, camera and settings, with the renderers that draw them.
 #[derive(Debug)]
 pub struct Stage {
-    /// Everything that the panel edits; its technique is that of the first side.
+    /// All settings that the panel edits. The technique belongs to the first side.
     pub settings: Settings,
     /// The camera.
     pub camera: FlyCamera,
-    /// Index of the animation that plays, if the scene has it.
+    /// Index of the animation to play, if the scene has it.
     pub animation: usize,
-    /// Place of the bar between two techniques, as a share of the picture's width.
+    /// Position of the bar between two techniques, as a share of the picture's width.
     pub split: f32,
     gpu: Gpu,
     samples: u32,
@@ -96,36 +96,37 @@ pub struct Stage {
     side: Side,
     other: Option<Other>,
     seconds: f32,
-    /// Seconds since the stage was set up: the clock for blinking marks, the resting pointer and the age of figures.
+    /// Seconds since the stage was set up: the clock for blinking marks, the resting pointer and the age of
+    /// figures.
     clock: f32,
     home: (Settings, FlyCamera),
     artefact: ArtefactShow,
     why: why::PixelQuestion,
     reads_depths: bool,
-    /// Whether nothing shows the verdicts of the next pictures.
+    /// Whether the verdicts of the next pictures are not shown.
     is_unseen: bool,
     sample: Option<SampleShow>,
-    /// Number of the file's camera whose lens the settings have taken.
+    /// Number of the file's camera whose lens is already in the settings.
     followed: Option<u32>,
 }
 
-/// Views that a technique is tuned for.
+/// Number of views for auto-tune.
 const TUNE_VIEWS: u32 = 4;
-/// Flight from one of them to the next, in seconds at the camera's speed.
+/// Flight from one of these views to the next, in seconds at the camera's speed.
 const TUNE_STEP: f32 = 0.02;
-/// Turn from one of them to the next, in radians.
+/// Turn from one of these views to the next, in radians.
 const TUNE_TURN: f32 = 0.004;
 
-/// How often marks blink, in turns a second.
+/// Blinks of marks per second.
 const BLINKS: f32 = 1.2;
 
 impl Stage {
-    /// Sets up a scene with settings that suit its size, seen by its own camera or from a position
-    /// that shows all of it. Pictures get `samples` per pixel (1 or 4).
+    /// Sets up a scene with settings that suit its size, viewed by its own camera or from a position that
+    /// shows all of it. Pictures get `samples` per pixel (1 or 4).
     ///
     /// # Errors
     ///
-    /// [`StageError`] if the scene is empty or the shadow map impossible.
+    /// [`StageError`] if the scene is empty or the shadow map cannot be made.
     pub fn new(gpu: Gpu, scene: Scene, samples: u32) -> Result<Self, StageError> {
         let side = Side::new(&gpu, &Settings::default().technique, samples)?;
         let scene = PreparedScene::new(&gpu, side.evaluator.renderer.material_layout(), scene)?;
@@ -152,7 +153,7 @@ impl Stage {
         })
     }
 
-    /// A stage with a placeholder, until [`Self::set_prepared`] brings a scene.
+    /// Makes a stage with a placeholder scene, until [`Self::set_prepared`] sets one.
     pub(crate) fn empty(gpu: Gpu, samples: u32) -> Result<Self, StageError> {
         let triangle = [glam::Vec3::ZERO, glam::Vec3::X, glam::Vec3::Z];
         Self::new(gpu, Scene::from_objects("empty", &[vec![triangle]]), samples)
@@ -168,7 +169,7 @@ impl Stage {
         Ok(())
     }
 
-    /// Shows a scene that was prepared elsewhere, with [`Self::material_layout`].
+    /// Shows a scene that was prepared elsewhere with [`Self::material_layout`].
     pub fn set_prepared(&mut self, scene: PreparedScene) {
         self.scene = scene;
         self.home = home::home(&self.scene);
@@ -182,11 +183,11 @@ impl Stage {
         self.side.scene_changed();
     }
 
-    /// Goes on with another device, after the first one was lost: scene, pose, camera and settings stay as they are.
+    /// Continues with another device after the first one was lost. Scene, pose, camera and settings stay.
     ///
     /// # Errors
     ///
-    /// [`StageError`] if the device has no memory for as much. The stage stays with the old one then.
+    /// [`StageError`] if the new device has too little memory. The stage keeps the old device then.
     pub fn move_to(&mut self, gpu: Gpu) -> Result<(), StageError> {
         let side = self.side.anew(&gpu, self.samples)?;
         self.scene.move_to(&gpu, side.evaluator.renderer.material_layout())?;
@@ -202,56 +203,56 @@ impl Stage {
         Ok(())
     }
 
-    /// Layout of the scene's materials, for scenes that are prepared elsewhere.
+    /// Returns the layout of the scene's materials, for scenes that are prepared elsewhere.
     pub fn material_layout(&self) -> &wgpu::BindGroupLayout {
         self.side.evaluator.renderer.material_layout()
     }
 
-    /// From now on, visible points are counted in depth buffers and not by rays: for pictures that follow each other in
-    /// a window. Counts come a frame or two late, whenever the GPU is done, so pictures may differ from run to run.
-    /// Static casters are kept in the shadow maps, too, and nothing waits for rays.
+    /// Counts visible points in depth buffers instead of by rays from now on, for consecutive pictures in a
+    /// window. Counts arrive a frame or two late, as soon as the GPU is done, so pictures may differ from run
+    /// to run. Static casters are kept in the shadow maps, too, and nothing waits for rays.
     pub fn read_depths(&mut self) {
         self.reads_depths = true;
         self.side.follow();
     }
 
-    /// From now on, each picture waits for its rays: for pictures that are made one by one.
+    /// Makes each picture wait for its rays from now on, for pictures that are made one by one.
     pub fn wait_for_rays(&mut self) {
         self.side.live.waits = true;
     }
 
-    /// Leaves the next pictures without verdicts where each picture [waits](Self::wait_for_rays) for its own: nothing
-    /// shows them.
+    /// Skips the verdicts of the next pictures, which are not shown, if each picture
+    /// [waits](Self::wait_for_rays) for its own.
     pub(crate) fn set_unseen(&mut self, is_unseen: bool) {
         self.is_unseen = is_unseen;
     }
 
-    /// The scene on show.
+    /// Returns the current scene.
     pub fn scene(&self) -> &Scene {
         self.scene.scene()
     }
 
-    /// The scene on show, prepared for drawing and judging.
+    /// Returns the current scene, prepared for drawing and judging.
     pub fn prepared_scene(&self) -> &PreparedScene {
         &self.scene
     }
 
-    /// World bounds of the scene in its present pose, in metres.
+    /// Returns the world bounds of the scene in its current pose, in metres.
     pub fn bounds(&self) -> Aabb {
         self.scene.bounds()
     }
 
-    /// The GPU that draws.
+    /// Returns the GPU that draws.
     pub fn gpu(&self) -> &Gpu {
         &self.gpu
     }
 
-    /// A target of the given width and height, in pixels, that this stage can draw into.
+    /// Makes a target of the given width and height, in pixels, for this stage.
     pub fn target(&self, size: [u32; 2]) -> RenderTarget {
         self.side.evaluator.renderer.target(&self.gpu, size)
     }
 
-    /// Why the settings cannot be shown as they are, as a readable line.
+    /// Returns why the settings cannot be shown unchanged, as a readable line.
     pub fn problem(&self) -> Option<&str> {
         if self.draws_sample() {
             return self.sample_message();
@@ -260,18 +261,18 @@ impl Stage {
         self.side.problem.as_deref().or(other)
     }
 
-    /// Why the device has no compute shaders, if it has none.
+    /// Returns why the device has no compute shaders, if it has none.
     pub(crate) fn no_compute(&self) -> Option<&'static str> {
-        let reason = "This takes compute shaders, which this browser draws without: it has WebGL2 and no WebGPU";
+        let reason = "This needs compute shaders, which this browser lacks: it has WebGL2 and no WebGPU";
         (!self.gpu.can_compute()).then_some(reason)
     }
 
-    /// The settings that the scene was opened with.
+    /// Returns the initial settings of the scene.
     pub fn home_settings(&self) -> Settings {
         self.home.0
     }
 
-    /// Moves camera, sun and animation on by `seconds`.
+    /// Moves camera, sun and animation by `seconds`.
     pub fn update(&mut self, input: &FlyInput, seconds: f32) {
         let input = self.steer_sample(input, seconds);
         if input.moves() {
@@ -286,29 +287,29 @@ impl Stage {
         self.follow_file();
     }
 
-    /// Whether an animation moves the scene from frame to frame.
+    /// Returns whether an animation moves the scene from frame to frame.
     fn plays(&self) -> bool {
         self.settings.view.play && self.animation < self.scene().animations.len()
     }
 
-    /// Poses the scene at a time of its animation, in seconds, with the sun and camera of the file where they are followed.
+    /// Poses the scene at a time of its animation, in seconds, with the followed sun and camera of the file.
     pub fn set_time(&mut self, seconds: f32) {
         self.seconds = seconds;
         self.scene.set_time(&self.gpu, self.animation, seconds);
         self.follow_file();
     }
 
-    /// Time of the animation, in seconds.
+    /// Returns the time of the animation, in seconds.
     pub fn seconds(&self) -> f32 {
         self.seconds
     }
 
-    /// How long the animation takes, in seconds; `None` without one.
+    /// Returns the duration of the animation, in seconds; `None` without one.
     pub fn duration(&self) -> Option<f32> {
         self.scene().animations.get(self.animation).map(|animation| animation.duration)
     }
 
-    /// Back to the settings and the view that the scene was opened with.
+    /// Restores the initial settings and view of the scene.
     pub fn reset(&mut self) {
         (self.settings, self.camera) = self.home;
         self.followed = self.settings.camera.file;
@@ -319,8 +320,8 @@ impl Stage {
         }
     }
 
-    /// Puts the camera back to the view that the scene was opened with. Settings stay, except for the height of an
-    /// orthographic picture, which flying changes. Where that view follows a camera of the file, it takes the whole lens.
+    /// Restores the initial view of the scene. Settings stay, except for the height of an orthographic
+    /// picture, which flying changes. If that view follows a camera of the file, its whole lens is restored.
     pub fn reset_camera(&mut self) {
         self.set_camera(self.sample_reset().unwrap_or(self.home.1));
         let (home, now) = (self.home.0.camera, &mut self.settings.camera);
@@ -331,13 +332,13 @@ impl Stage {
         self.followed = home.file;
     }
 
-    /// Levels the camera: takes its roll away. It follows no camera of the file any more.
+    /// Removes the camera's roll, and stops following a camera of the file.
     pub fn level_camera(&mut self) {
         self.camera.roll = 0.0;
         self.settings.camera.file = None;
     }
 
-    /// Puts the camera somewhere else: the next view starts a new path, and follows no camera of the file.
+    /// Moves the camera elsewhere. The next view starts a new path, and follows no camera of the file.
     pub fn set_camera(&mut self, camera: FlyCamera) {
         self.camera = camera;
         self.settings.camera.file = None;
@@ -348,23 +349,25 @@ impl Stage {
         }
     }
 
-    /// Makes the present settings and view those to go back to, with the camera and the sun of the file that they name.
+    /// Makes the current settings and view the initial ones, with the camera and the sun of the file that
+    /// they name.
     pub fn set_home(&mut self) {
         self.follow_file();
         self.home = (self.settings, self.camera);
     }
 
-    /// The camera with its lens, for a picture of the given size.
+    /// Returns the camera with its lens, for a picture of the given size.
     pub fn camera_of(&self, size: [u32; 2]) -> Camera {
         self.camera.camera(&self.settings.camera, size[0] as f32 / size[1] as f32)
     }
 
-    /// The present view as it is fitted and judged, for a picture of the given size.
+    /// Returns the current view for fitting and judging, for a picture of the given size.
     fn view(&self, size: [u32; 2]) -> View {
         View { camera: self.camera_of(size), direction: self.settings.light.direction(), is_first: false }
     }
 
-    /// Views to tune a technique for: the present one, and those of a short flight from it, so that crawl is measured too.
+    /// Returns the views for which a technique is tuned: the current one, and those of a short flight from
+    /// it, so that crawl is measured too.
     pub(crate) fn views_to_tune(&self, size: [u32; 2]) -> Vec<View> {
         let direction = self.settings.light.direction();
         let step = self.settings.camera.speed * TUNE_STEP;
@@ -379,16 +382,16 @@ impl Stage {
         views.collect()
     }
 
-    /// The maps of the present view and settings; none where there is nothing to fit, with the
-    /// reason as [`Self::problem`].
+    /// Returns the maps of the current view and settings. If fitting fails there are none, and
+    /// [`Self::problem`] gives the reason.
     pub fn maps(&mut self, size: [u32; 2]) -> Vec<FittedMap> {
         self.follow_casters();
         let (side, mut shot) = self.shot(size);
         side.fit(&mut shot).maps.to_vec()
     }
 
-    /// Draws the present view into a target: the first technique up to the bar and the second one from there, where two
-    /// are compared; a sample as its source does.
+    /// Draws the current view into a target. In a comparison, the first technique is drawn up to the bar and
+    /// the second one after it. A sample is drawn as in its source.
     pub fn draw(&mut self, target: &RenderTarget) {
         self.follow_casters();
         if self.sample.is_some() {
@@ -401,7 +404,7 @@ impl Stage {
 
     fn draw_side(&mut self, target: &RenderTarget) {
         if self.reads_depths {
-            // Results that fits and figures use when they have arrived.
+            // Results for fits and figures, used when they arrive.
             self.scene.take_rays();
             self.scene.request_rays();
         }
@@ -410,14 +413,15 @@ impl Stage {
         shot.scissor = split;
         side.draw(&mut shot, target);
         self.draw_other(target);
-        // Both techniques know the size of the whole picture.
+        // Both techniques use the size of the whole picture.
         self.side.read_picture(&self.gpu, target);
         if let Some(other) = &mut self.other {
             other.read_picture(&self.gpu, target);
         }
     }
 
-    /// Lets blended surfaces cast as the settings say. What the frames before found out is forgotten if that changes.
+    /// Applies the setting for blended surfaces as casters. If it changes, results of earlier frames are
+    /// discarded.
     fn follow_casters(&mut self) {
         let casts = self.settings.view.blended_cast;
         let blended = if casts { BlendedCasters::WhereOpaque } else { BlendedCasters::Never };
@@ -437,7 +441,7 @@ impl Stage {
         }
     }
 
-    /// Draws the camera, the maps and their casters from outside, whatever the view is.
+    /// Draws the camera, the maps and their casters from outside, in any view mode.
     pub fn draw_beside(&mut self, target: &RenderTarget) {
         let (side, mut shot) = self.shot(target.size);
         let Some(fitted) = side.fitted.clone() else { return };
@@ -447,7 +451,7 @@ impl Stage {
         side.statistics = statistics;
     }
 
-    /// The first side, and the shot that it draws into a picture of a size.
+    /// Returns the first side, and its shot for a picture of a size.
     fn shot(&mut self, size: [u32; 2]) -> (&mut Side, Shot<'_>) {
         self.follow_file();
         let camera = self.camera_of(size);
@@ -457,7 +461,7 @@ impl Stage {
             scene: &mut self.scene,
             settings: &self.settings,
             camera,
-            // The distance of the scene's first view, so that no demonstration changes the haze.
+            // The distance of the initial view, so that no demonstration changes the haze.
             sight: self.home.0.camera.far,
             plays,
             seconds: self.seconds,
@@ -469,7 +473,7 @@ impl Stage {
         (&mut self.side, shot)
     }
 
-    /// Strength of blinking marks at present, 0..=1.
+    /// Returns the current strength of blinking marks, 0..=1.
     fn blink(&self) -> f32 {
         0.5 - 0.5 * (self.clock * BLINKS * core::f32::consts::TAU).cos()
     }

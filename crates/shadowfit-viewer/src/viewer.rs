@@ -1,5 +1,5 @@
-//! The viewer without its window: scene, interface, commands and background work. The window and the headless mode
-//! call it once per frame.
+//! The viewer without its window: scene, interface, commands and background work. The window and the headless
+//! mode call it once per frame.
 
 mod commands;
 #[cfg(target_family = "wasm")]
@@ -46,9 +46,9 @@ pub(crate) use faults::Renewals;
 use saving::{Destination, Saving};
 pub(crate) use start::Start;
 
-/// Seconds between two writes of the saved settings.
+/// Interval between two writes of the saved settings, in seconds.
 const SAVE_EVERY: f64 = 5.0;
-/// Weight of the newest frame in the frame time shown.
+/// Weight of the newest frame in the displayed frame time.
 const FRAME_TIME_WEIGHT: f32 = 0.1;
 
 /// The whole viewer except its window.
@@ -59,9 +59,9 @@ pub(crate) struct Viewer {
     pub(crate) player: Player,
     start: Start,
     source: SceneSource,
-    /// The settings of the scene alone, without arguments and saved settings.
+    /// The scene's own settings, without arguments and saved settings.
     own_settings: Settings,
-    /// Whether there is a scene to show.
+    /// Whether a scene has been loaded.
     has_scene: bool,
     loading: Option<Loading>,
     searching: Option<Receiver<Found>>,
@@ -74,10 +74,10 @@ pub(crate) struct Viewer {
     last_state: Option<State>,
     saved: Saved,
     store: Option<Store>,
-    /// The link that is being followed, until its scene is there.
+    /// The link to apply once its scene is loaded.
     link: Option<Link>,
-    /// Address of the page in which the viewer runs, without a fragment; `None` in a window of its own, which alone can
-    /// be quit.
+    /// Address of the page in which the viewer runs, without a fragment; `None` in a window. Only a window
+    /// can be quit.
     pub(crate) page: Option<String>,
     presets: Vec<UserPreset>,
     message: Option<Message>,
@@ -85,24 +85,25 @@ pub(crate) struct Viewer {
     clock: f64,
     saved_at: f64,
     commands: VecDeque<Request>,
-    /// The line of the script that asked for the command being run.
+    /// The line of the script that requested the current command.
     line: Option<String>,
-    /// Pictures of the whole window to be saved.
+    /// Files for the next picture of the whole window.
     shots: Vec<Destination>,
-    /// Pictures whose pixels are on their way.
+    /// Pictures that wait for their pixels.
     saving: Vec<Saving>,
-    /// Where random actions save, so that they do not fill the user's folder; removed at the end.
+    /// Folder for files that random actions save, so that they do not fill the user's folder. It is removed
+    /// at the end.
     litter: Option<TemporaryFolder>,
     pub(crate) window_requests: WindowRequests,
-    /// Whether the mouse drags the picture: pages lock the pointer then.
+    /// Whether the mouse drags the picture. Pages lock the pointer then.
     pub(crate) is_looking: bool,
-    /// Faults of the device that were told.
+    /// Device faults that were reported.
     told_faults: HashSet<String>,
-    /// The error that the viewer ends with.
+    /// The viewer's final error.
     pub(crate) failure: Option<anyhow::Error>,
 }
 
-/// A command, and the line of the script that asks for it.
+/// A command, and the line of the script that requested it.
 struct Request {
     command: Command,
     line: Option<String>,
@@ -114,13 +115,13 @@ impl From<Command> for Request {
     }
 }
 
-/// A message, and when it was first shown, in seconds since the start.
+/// A message, and the time when it was first shown, in seconds since the start.
 struct Message {
     text: String,
     since: f64,
 }
 
-/// How long a message is shown, in seconds.
+/// Duration of a message, in seconds.
 const MESSAGE_TIME: f64 = 8.0;
 
 /// Requests of the viewer to its window.
@@ -130,13 +131,13 @@ pub(crate) struct WindowRequests {
     /// A new size, in pixels.
     pub(crate) resize: Option<[u32; 2]>,
     pub(crate) new_title: bool,
-    /// What the window's surface shall refuse the next frame with, in place of its texture.
+    /// The answer of the window's surface to the next frame, instead of a texture.
     pub(crate) refusal: Option<Refusal>,
 }
 
 impl Viewer {
-    /// A viewer whose frames are painted to a surface of a format. `stage` has a scene that is not shown until the one
-    /// of the start is there.
+    /// Makes a viewer whose frames are painted to a surface of a format. The scene of `stage` is not shown;
+    /// the first scene is loaded later.
     pub(crate) fn new(stage: Stage, format: wgpu::TextureFormat, start: Start, store: Option<Store>) -> Self {
         let mut viewer = Self {
             interface: Interface::new(&stage, format),
@@ -177,8 +178,8 @@ impl Viewer {
         viewer
     }
 
-    /// Takes keys out of the input, unless the panel has the focus: typing must not fly the camera, but a release must
-    /// always arrive.
+    /// Takes keys out of the input, unless the panel has the focus. Typing must not fly the camera, but a key
+    /// release must always arrive.
     fn take_keys(&mut self, raw_input: &mut RawInput) {
         for event in &raw_input.events {
             if let Event::ModifiersChanged(modifiers) = event {
@@ -189,7 +190,7 @@ impl Viewer {
         let is_taken = |event: &mut Event| matches!(event, Event::Key { pressed, .. } if !(*pressed && types));
         for event in raw_input.events.extract_if(.., is_taken) {
             let Event::Key { key, physical_key, pressed, modifiers, .. } = event else { continue };
-            // The place of a key matters for flying, not the letter that a layout prints on it.
+            // The position of a key matters for flying, not its letter in the keyboard layout.
             let chord = Chord {
                 key: physical_key.unwrap_or(key),
                 ctrl: modifiers.ctrl,
@@ -201,7 +202,7 @@ impl Viewer {
         }
     }
 
-    /// The command of a key. A sample's own controls win over those of the viewer.
+    /// Returns the command of a key. A sample's own controls override those of the viewer.
     fn key_command(&self, chord: Chord) -> Option<Command> {
         match chord.command() {
             Some(Command::Reset) if self.stage.has_sample_reset() => Some(Command::ResetCamera),
@@ -214,30 +215,30 @@ impl Viewer {
         self.commands.push_back(command.into());
     }
 
-    /// Whether a button of the mouse is held.
+    /// Returns whether a mouse button is pressed.
     fn presses(&self) -> bool {
         self.interface.context.input(|input| input.pointer.any_down())
     }
 
-    /// Whether keys go to a widget of the panel.
+    /// Returns whether keys go to a widget of the panel.
     fn types(&self) -> bool {
         self.interface.context.egui_wants_keyboard_input()
     }
 
-    /// Lays out a frame, draws it and runs its commands, whose effect the next frame shows. `seconds` have passed since
-    /// the frame before.
+    /// Lays out a frame, draws it and runs its commands, whose effect the next frame shows. `seconds` is the
+    /// time since the previous frame.
     pub(crate) fn frame(&mut self, mut raw_input: RawInput, seconds: f32) -> (Layout, egui::PlatformOutput) {
         self.clock += f64::from(seconds);
         let old = self.interface.frame_ms.unwrap_or(seconds * 1e3);
         self.interface.frame_ms = Some(old + (seconds * 1e3 - old) * FRAME_TIME_WEIGHT);
-        // Messages of the start wait until the panel can be seen.
+        // Messages of the start wait until the panel is visible.
         self.message.take_if(|message| self.has_scene && self.clock - message.since > MESSAGE_TIME);
         self.take_keys(&mut raw_input);
         self.play(&mut raw_input, seconds);
         self.take_background();
         let (asked, layout, output) = self.lay_out(raw_input);
         if self.has_scene {
-            // The card that explains a pixel is about techniques.
+            // The card that explains a pixel only applies to techniques.
             let hover = asked.hover.filter(|_| !self.stage.draws_sample());
             self.stage.ask_why(hover, self.interface.pictures.size());
             self.interface.pictures.draw(&mut self.stage);
@@ -283,7 +284,7 @@ impl Viewer {
         self.interface.layout(&mut self.stage, &input, raw_input)
     }
 
-    /// Paints a frame that was laid out to `target` of `size` pixels, and saves it if a command asked for that.
+    /// Paints a laid out frame to `target` of `size` pixels, and saves it if a command requested that.
     pub(crate) fn paint(&mut self, layout: &Layout, target: &wgpu::TextureView, size: [u32; 2]) {
         self.interface.paint(&self.stage, layout, target, size);
         for destination in std::mem::take(&mut self.shots) {
@@ -336,7 +337,7 @@ impl Viewer {
                 Err(std::sync::mpsc::TryRecvError::Empty) => {}
                 Err(std::sync::mpsc::TryRecvError::Disconnected) => {
                     self.searching = None;
-                    self.say("The search for a view ended without one; this is a bug of the viewer");
+                    self.say("The search for a view ended without a result; this is a bug of the viewer");
                 }
             }
         }
@@ -352,7 +353,7 @@ impl Viewer {
         self.measuring.take();
     }
 
-    /// Everything that undo and redo restore.
+    /// Returns the state that undo and redo restore.
     fn state(&self) -> State {
         let stage = &self.stage;
         State {
@@ -363,7 +364,8 @@ impl Viewer {
         }
     }
 
-    /// Shows the outcome of a command. If it failed and a line of the script asked for it, the script has failed, too.
+    /// Shows the outcome of a command. If it failed and a line of the script requested it, the script has
+    /// failed, too.
     fn tell(&mut self, outcome: Result<String>) {
         let text = outcome.unwrap_or_else(|error| {
             if let Some(line) = &self.line {
@@ -375,11 +377,11 @@ impl Viewer {
         self.say(text);
     }
 
-    /// Returns the error that the viewer or its script ends with.
+    /// Returns the final error of the viewer or its script.
     pub(crate) fn outcome(&mut self) -> Result<()> {
         match self.failure.take() {
             Some(failure) => Err(failure),
-            None if self.player.failed => Err(anyhow!("the script did not end as it should")),
+            None if self.player.failed => Err(anyhow!("the script failed; see the errors above")),
             None => Ok(()),
         }
     }
@@ -389,12 +391,12 @@ impl Viewer {
         self.message = Some(Message { text: text.into(), since: self.clock });
     }
 
-    /// Title of the window.
+    /// Returns the title of the window.
     pub(crate) fn title(&self) -> String {
         format!("shadowfit: {} ({})", self.source.label(), self.stage.gpu().name())
     }
 
-    /// Whether background work is running that a script may wait for.
+    /// Returns whether background work is running that a script may wait for.
     pub(crate) fn is_waiting(&self) -> bool {
         self.loading.is_some()
             || self.searching.is_some()
@@ -404,23 +406,23 @@ impl Viewer {
             || self.measuring.is_running()
     }
 
-    /// Whether a scene is being loaded.
+    /// Returns whether a scene is loading.
     pub(crate) fn is_loading(&self) -> bool {
         self.loading.is_some()
     }
 
-    /// Whether the script has ended and every scene that it opened is there.
+    /// Returns whether the script has ended and its last scene is loaded.
     pub(crate) fn has_played(&self) -> bool {
         self.player.is_done() && self.loading.is_none() && self.saving.is_empty()
     }
 
-    /// Whether the scene of the start is shown.
+    /// Returns whether the first scene is shown.
     pub(crate) fn is_ready(&self) -> bool {
         self.has_scene
     }
 }
 
-/// A key press for the panel's focused widget.
+/// Returns a key press for the panel's focused widget.
 fn typed(chord: Chord) -> Event {
     let modifiers = egui::Modifiers {
         alt: chord.alt,

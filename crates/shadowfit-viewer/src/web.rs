@@ -6,7 +6,8 @@
 //!   storage, downloads, clipboard   ◄─messages─  which draws on the page's canvas
 //! ```
 //!
-//! The worker keeps the page free: however long the viewer computes, the page scrolls, types and shows progress.
+//! The worker keeps the page responsive: while the viewer computes, the page scrolls, types and shows
+//! progress.
 
 mod input;
 
@@ -34,10 +35,10 @@ use crate::stage::Stage;
 use crate::viewer::{Start, Viewer};
 use input::Events;
 
-/// Samples per pixel: software rasterisers pay for each.
+/// Samples per pixel. Software rasterisers take time for each sample.
 const GPU_SAMPLES: u32 = 4;
 const SOFTWARE_SAMPLES: u32 = 1;
-/// Frames that the GPU may have to draw before another one is begun: browsers accept any number.
+/// Greatest number of unfinished frames on the GPU when a new one starts. Browsers accept any number.
 const MOST_AHEAD: u32 = 2;
 
 /// The viewer of a page.
@@ -54,14 +55,14 @@ pub struct Page {
     is_stale: bool,
     is_focused: bool,
     theme: Option<egui::Theme>,
-    /// Frames that the GPU has not finished.
+    /// Number of frames that the GPU has not finished.
     ahead: Arc<AtomicU32>,
     start: Instant,
     last_frame: Instant,
     told: Told,
 }
 
-/// What the page was told last.
+/// State last sent to the page.
 #[derive(Debug, Default)]
 struct Told {
     cursor: Option<egui::CursorIcon>,
@@ -72,12 +73,13 @@ struct Told {
 
 #[wasm_bindgen]
 impl Page {
-    /// Opens the graphics device and draws on a canvas of some pixels, `scale` of them a point. `kept` is the text of the
-    /// last visit, `page` the address of the page without its fragment, which comes by itself.
+    /// Opens the graphics device and draws on a canvas. `scale` is the number of pixels per point. `kept` is
+    /// the saved text of the last visit, `page` the address of the page without its fragment, and `fragment`
+    /// the fragment.
     ///
     /// # Errors
     ///
-    /// With a message for people if the browser gives no device.
+    /// With a message for users, if the browser provides no device.
     pub async fn open(
         canvas: OffscreenCanvas,
         scale: f32,
@@ -130,13 +132,14 @@ impl Page {
         })
     }
 
-    /// Draws a frame, unless the GPU still has some to draw.
+    /// Draws a frame, unless the GPU has too many unfinished ones.
     ///
     /// # Errors
     ///
-    /// With a message for people where nothing can be drawn any more.
+    /// With a message for users, if drawing is no longer possible.
     pub fn frame(&mut self) -> Result<(), JsError> {
-        // WebGL2 tells only then what is finished; WebGPU does so by itself. A device that was lost says so on its own.
+        // WebGL2 reports finished work only here; WebGPU does so by itself. A lost device is reported by its
+        // own callback.
         let _ = self.viewer.stage.gpu().device.poll(wgpu::PollType::Poll);
         if self.ahead.load(Ordering::Relaxed) >= MOST_AHEAD {
             return Ok(());
@@ -144,64 +147,64 @@ impl Page {
         self.draw().map_err(|error| JsError::new(&format!("{error:#}")))
     }
 
-    /// The canvas got another size, in pixels, `scale` of them a point.
+    /// Resizes the canvas, in pixels. `scale` is the number of pixels per point.
     pub fn resize(&mut self, width: u32, height: u32, scale: f32) {
         let limit = self.viewer.stage.gpu().device.limits().max_texture_dimension_2d;
         (self.configuration.width, self.configuration.height) = (width.clamp(1, limit), height.clamp(1, limit));
         (self.scale, self.is_stale) = (scale, true);
     }
 
-    /// The keys that are held with others.
+    /// Sets the held modifier keys.
     pub fn held(&mut self, bits: u32) {
         self.events.held(bits);
     }
 
-    /// The mouse moved to a point, in points, and by how far.
+    /// Reports a mouse movement to a point, and its distance, in points.
     pub fn moved(&mut self, x: f32, y: f32, by_x: f32, by_y: f32) {
         self.events.moved(Pos2::new(x, y), [by_x, by_y]);
     }
 
-    /// A button of the mouse was pressed or released.
+    /// Reports that a mouse button was pressed or released.
     pub fn button(&mut self, x: f32, y: f32, number: u32, pressed: bool) {
         self.events.button(Pos2::new(x, y), number, pressed);
     }
 
-    /// The mouse left the page.
+    /// Reports that the mouse left the page.
     pub fn gone(&mut self) {
         self.events.gone();
     }
 
-    /// The wheel turned.
+    /// Reports a turn of the wheel.
     pub fn wheel(&mut self, x: f32, y: f32, unit: u32) {
         self.events.wheel([x, y], unit);
     }
 
-    /// A finger.
+    /// Reports a touch.
     pub fn touch(&mut self, finger: u32, phase: &str, x: f32, y: f32) {
         self.events.touch(finger.into(), phase, Pos2::new(x, y));
     }
 
-    /// A key was pressed or released.
+    /// Reports that a key was pressed or released.
     pub fn key(&mut self, code: &str, name: &str, pressed: bool, repeat: bool) {
         self.events.key(code, name, pressed, repeat);
     }
 
-    /// A text was pasted.
+    /// Pastes a text.
     pub fn paste(&mut self, text: String) {
         self.events.waiting.push(egui::Event::Paste(text));
     }
 
-    /// What is selected is to be copied.
+    /// Copies the selection.
     pub fn copy(&mut self) {
         self.events.waiting.push(egui::Event::Copy);
     }
 
-    /// What is selected is to be cut.
+    /// Cuts the selection.
     pub fn cut(&mut self) {
         self.events.waiting.push(egui::Event::Cut);
     }
 
-    /// The page got or lost the keyboard.
+    /// Reports that the page got or lost the keyboard focus.
     pub fn focus(&mut self, is_focused: bool) {
         self.is_focused = is_focused;
         if !is_focused {
@@ -209,29 +212,29 @@ impl Page {
         }
     }
 
-    /// Whether the browser prefers dark pages.
+    /// Sets whether the browser prefers dark pages.
     pub fn dark(&mut self, is_dark: bool) {
         self.theme = Some(if is_dark { egui::Theme::Dark } else { egui::Theme::Light });
     }
 
-    /// Other files were chosen: those before are forgotten.
+    /// Removes the earlier files, before newly chosen ones are added.
     #[expect(clippy::unused_self, reason = "the page calls what it opened")]
     pub fn files(&mut self) {
         files::clear();
     }
 
-    /// One of the files that were chosen together.
+    /// Adds one of the files that were chosen together.
     #[expect(clippy::unused_self, reason = "the page calls what it opened")]
     pub fn file(&mut self, name: String, bytes: Vec<u8>) {
         files::keep(name, bytes);
     }
 
-    /// Opens one of them.
+    /// Opens one of the files.
     pub fn open_file(&mut self, name: String) {
         self.viewer.ask(Command::OpenFile(PathBuf::from(name)));
     }
 
-    /// The page's fragment is another one: a link of this viewer was followed.
+    /// Follows a link after the page's fragment has changed.
     pub fn follow(&mut self, fragment: String) {
         let Some(text) = link_of(fragment) else { return };
         match Link::parse(&text) {
@@ -240,27 +243,27 @@ impl Page {
         }
     }
 
-    /// The mouse, which the page has locked, moved by so many points.
+    /// Turns the camera by a movement of the locked mouse, in points.
     pub fn look(&mut self, x: f32, y: f32) {
         self.viewer.input.look += glam::vec2(x, y) * self.scale;
     }
 
-    /// The sticks of a gamepad: movement and turn, each -1..=1.
+    /// Sets the sticks of a gamepad: movement and turn, each -1..=1.
     pub fn sticks(&mut self, right: f32, up: f32, forward: f32, turn: f32, tilt: f32) {
         self.viewer.input.sticks = (glam::vec3(right, up, forward), glam::vec2(turn, tilt));
     }
 
-    /// A button of a gamepad that resets the camera.
+    /// Resets the camera, for a button of a gamepad.
     pub fn reset_camera(&mut self) {
         self.viewer.ask(Command::ResetCamera);
     }
 
-    /// Saves the settings: the page is about to be hidden.
+    /// Saves the settings, before the page is hidden.
     pub fn save(&mut self) {
         self.viewer.save();
     }
 
-    /// Facts for tests of the page, as a line of JSON.
+    /// Returns facts for tests of the page, as a line of JSON.
     pub fn facts(&self) -> String {
         self.viewer.facts([self.configuration.width, self.configuration.height])
     }
@@ -293,7 +296,7 @@ impl Page {
                 return Ok(());
             }
             Current::Timeout | Current::Occluded => return Ok(()),
-            Current::Validation => return Err(anyhow!("the canvas cannot be drawn on any more")),
+            Current::Validation => return Err(anyhow!("the canvas can no longer be drawn on")),
         };
         let view = texture.texture.create_view(&Default::default());
         let size = [self.configuration.width, self.configuration.height];
@@ -321,7 +324,7 @@ impl Page {
         }
     }
 
-    /// Tells the page what egui and the viewer want of it.
+    /// Sends the requests of egui and the viewer to the page.
     fn handle(&mut self, output: &egui::PlatformOutput) {
         for command in &output.commands {
             match command {
@@ -372,8 +375,8 @@ async fn open_surface(canvas: &OffscreenCanvas) -> Result<(wgpu::Surface<'static
     Ok((surface, gpu, configuration))
 }
 
-/// Returns the start that a page's fragment asks for. A link that makes no sense opens the viewer as if there were none; its
-/// problem is returned, too.
+/// Returns the start for a page's fragment. An invalid link opens the viewer as without a link, and its error
+/// is returned, too.
 fn start_of(fragment: String) -> Result<(Start, Option<anyhow::Error>)> {
     match Start::new(&Arguments { link: link_of(fragment), ..Arguments::default() }) {
         Ok(start) => Ok((start, None)),
@@ -381,16 +384,16 @@ fn start_of(fragment: String) -> Result<(Start, Option<anyhow::Error>)> {
     }
 }
 
-/// A fragment as the link that it is; `None` without one.
+/// Returns a fragment as a link; `None` if it is empty.
 fn link_of(fragment: String) -> Option<String> {
     (fragment.len() > 1).then_some(fragment)
 }
 
-/// The font for text and that for code, which has arrows: see `fonts/README.md`.
+/// The font for text, and the font for code, which has arrows: see `fonts/README.md`.
 const TEXT_FONT: &[u8] = include_bytes!("../fonts/text.ttf");
 const CODE_FONT: &[u8] = include_bytes!("../fonts/code.ttf");
 
-/// egui's own fonts in part: those for emoji are larger than all others.
+/// Returns some of egui's fonts. Its emoji fonts are left out, since they are larger than all others.
 fn fonts() -> FontDefinitions {
     let mut fonts = FontDefinitions::empty();
     let all = [("text", TEXT_FONT), ("code", CODE_FONT), ("icons", EGUI_ICONS)];
@@ -403,7 +406,7 @@ fn fonts() -> FontDefinitions {
     fonts
 }
 
-/// Tells the page about errors of the device that nothing else reports.
+/// Reports device errors to the page that are not reported elsewhere.
 fn watch(gpu: &Gpu) {
     gpu.device.set_device_lost_callback(|reason, message| {
         if reason != wgpu::DeviceLostReason::Destroyed {
@@ -416,7 +419,7 @@ fn watch(gpu: &Gpu) {
     }));
 }
 
-/// The name of a pointer's shape in CSS.
+/// Returns the CSS name of a pointer's shape.
 fn cursor(icon: egui::CursorIcon) -> &'static str {
     use egui::CursorIcon as Icon;
     match icon {

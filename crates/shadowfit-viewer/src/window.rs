@@ -24,7 +24,7 @@ use crate::stage::Stage;
 use crate::viewer::{Renewals, Start, Viewer};
 use frame_log::FrameLog;
 
-/// Samples per pixel: software rasterisers pay for each.
+/// Samples per pixel. Software rasterisers take time for each sample.
 const GPU_SAMPLES: u32 = 4;
 const SOFTWARE_SAMPLES: u32 = 1;
 
@@ -34,7 +34,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<()> {
     let event_loop = EventLoop::new().map_err(|error| {
         anyhow!(
             "no window can be opened: {error}. Start the viewer in a graphical session, or under `xvfb-run` for a \
-             virtual one; `--headless DIR` renders the same views to files without any"
+             virtual one; `--headless DIR` renders the same views to files without a window"
         )
     })?;
     event_loop.set_control_flow(ControlFlow::Poll);
@@ -49,7 +49,7 @@ struct App {
     result: Result<()>,
 }
 
-/// Everything that lives as long as the window.
+/// State with the lifetime of the window.
 struct Running {
     window: Arc<Window>,
     surface: Surface,
@@ -63,7 +63,7 @@ struct Running {
     log: Option<FrameLog>,
 }
 
-/// The surface that frames are presented on.
+/// The surface on which frames are presented.
 struct Surface {
     instance: wgpu::Instance,
     window: Arc<Window>,
@@ -71,11 +71,11 @@ struct Surface {
     /// Whether the surface must be configured again before the next frame.
     is_stale: bool,
     configuration: wgpu::SurfaceConfiguration,
-    /// Size of the textures that it gives, in pixels: what it was configured to last, if it ever was.
+    /// Size of the surface's textures, in pixels, from the last configuration; `None` before the first one.
     size: Option<[u32; 2]>,
     /// Whether the window has an area to draw on.
     has_area: bool,
-    /// What a script lets it answer in place of its next texture.
+    /// The answer of a script in place of the next texture.
     refusal: Option<Refusal>,
 }
 
@@ -89,7 +89,7 @@ impl ApplicationHandler for App {
     }
 
     fn window_event(&mut self, event_loop: &ActiveEventLoop, window: WindowId, event: WindowEvent) {
-        // A window whose device was lost has gone.
+        // The event may belong to a window whose device was lost.
         let Some(running) = self.running.as_mut().filter(|running| running.window.id() == window) else { return };
         let stop = match event {
             WindowEvent::CloseRequested => Some(Ok(())),
@@ -107,7 +107,7 @@ impl ApplicationHandler for App {
     fn about_to_wait(&mut self, event_loop: &ActiveEventLoop) {
         if let Some(running) = &mut self.running {
             let visible = running.surface.has_area && running.window.is_minimized() != Some(true);
-            // A script goes on even if its window is hidden.
+            // A script continues even if its window is hidden.
             let goes_on = visible || !running.viewer.player.is_done();
             event_loop.set_control_flow(if goes_on { ControlFlow::Poll } else { ControlFlow::Wait });
             if visible {
@@ -175,7 +175,7 @@ impl Running {
 
     fn event(&mut self, event: &WindowEvent) {
         match event {
-            // The surface follows with the next frame, however many sizes come before it.
+            // The surface is resized with the next frame, after any number of size events.
             WindowEvent::Resized(size) => self.surface.expect(*size),
             WindowEvent::Focused(false) => self.viewer.input.release_all(),
             WindowEvent::DroppedFile(path) => self.viewer.ask(Command::OpenFile(path.clone())),
@@ -185,21 +185,21 @@ impl Running {
         let _ = self.egui.on_window_event(&self.window, event);
     }
 
-    /// Draws a frame; `Some` asks to quit.
+    /// Draws a frame. `Some` is a request to quit.
     fn frame(&mut self, event_loop: &ActiveEventLoop) -> Result<Option<()>> {
         if let Some(why) = self.viewer.stage.gpu().lost() {
             self.renew(event_loop, &why)?;
         }
         self.viewer.tell_faults();
-        // Without its device a frame ends where it is, and the next one has another. The window's texture is given back
-        // outside of what may panic.
+        // If the device is lost, the frame is abandoned, and the next frame gets another device. The window's
+        // texture is dropped outside the code that may panic.
         let gpu = self.viewer.stage.gpu().clone();
         if let Some(mut texture) = gpu.unless_lost(|| self.surface.acquire(&gpu)).transpose()? {
             gpu.unless_lost(|| self.draw(&mut texture));
         }
         let requests = std::mem::take(&mut self.viewer.window_requests);
         if let Some([width, height]) = requests.resize {
-            // The window answers with an event of its new size, sooner or later.
+            // The window reports its new size in a later event.
             let _ = self.window.request_inner_size(PhysicalSize::new(width, height));
         }
         if requests.new_title {
@@ -226,7 +226,7 @@ impl Running {
         let ((layout, output), laid_out) = own_time(|| self.viewer.frame(raw_input, seconds));
         self.egui.handle_platform_output(&self.window, output);
         let Some((surface, size)) = texture else {
-            // Nothing else holds such frames up.
+            // Without a texture, nothing else limits the frame rate.
             return std::thread::sleep(HIDDEN_FRAME);
         };
         let view = surface.texture.create_view(&Default::default());
@@ -238,8 +238,8 @@ impl Running {
         }
     }
 
-    /// Opens a device in place of one that was lost, and a window in place of the old one, which its swapchain may occupy:
-    /// wgpu 30 cannot always destroy that of a lost device.
+    /// Opens a device in place of a lost one, and a window in place of the old one. The lost device's
+    /// swapchain may still occupy the old window, since wgpu 30 cannot always destroy it.
     fn renew(&mut self, event_loop: &ActiveEventLoop, why: &str) -> Result<()> {
         self.viewer.save();
         self.renewals.next(why)?;
@@ -260,7 +260,7 @@ impl Running {
         Ok(())
     }
 
-    /// Notes a frame's own time for `--log-frames`.
+    /// Records a frame's own time for `--log-frames`.
     fn log_frame(&mut self, own: Spent, is_loading: bool) {
         let ready = self.viewer.is_ready().then(|| self.viewer.title());
         let frame_ms = self.viewer.interface.frame_ms.unwrap_or(0.0);
@@ -271,7 +271,7 @@ impl Running {
 }
 
 impl Surface {
-    /// The surface of a window, and a device that draws on it.
+    /// Makes the surface of a window, and a device that draws on it.
     fn new(window: Arc<Window>, adapter: &AdapterChoice) -> Result<(Self, Gpu)> {
         let instance = Gpu::instance();
         let handle = instance.create_surface(window.clone()).context("the window cannot be drawn on")?;
@@ -283,7 +283,7 @@ impl Surface {
         Ok((Self { instance, window, handle, is_stale, configuration, size, has_area, refusal }, gpu))
     }
 
-    /// Notes a new size of the window.
+    /// Records a new size of the window.
     fn expect(&mut self, size: PhysicalSize<u32>) {
         self.has_area = has_area(size);
         self.is_stale = true;
@@ -295,9 +295,9 @@ impl Surface {
             let limit = gpu.device.limits().max_texture_dimension_2d;
             self.configuration.width = size.width.min(limit);
             self.configuration.height = size.height.min(limit);
-            // A surface can only be configured while the GPU is idle. Where the thread that loads a scene submits work
-            // just then, that fails, the surface stays as it was, and the next frame tries again. Its textures then
-            // report a size that they do not have (wgpu 30), so the size is stored here.
+            // A surface can only be configured while the GPU is idle. If the thread that loads a scene
+            // submits work at that time, configuring fails, the surface stays unchanged, and the next frame
+            // tries again. Its textures then report a wrong size (wgpu 30), so the size is stored here.
             let scope = gpu.device.push_error_scope(wgpu::ErrorFilter::Validation);
             self.handle.configure(&gpu.device, &self.configuration);
             self.is_stale = pollster::block_on(scope.pop()).is_some();
@@ -307,7 +307,7 @@ impl Surface {
         }
     }
 
-    /// The next frame's texture and its size in pixels; `None` while there is nothing to draw on.
+    /// Returns the next frame's texture and its size in pixels; `None` while there is nothing to draw on.
     fn acquire(&mut self, gpu: &Gpu) -> Result<Option<(wgpu::SurfaceTexture, [u32; 2])>> {
         use wgpu::CurrentSurfaceTexture as Current;
         if self.is_stale {
@@ -324,7 +324,7 @@ impl Surface {
         match answer {
             Current::Success(texture) => Ok(Some((texture, size))),
             Current::Suboptimal(texture) => {
-                // This texture can still be shown; the next one should fit again.
+                // This texture can still be shown, but the surface should be resized for the next one.
                 self.is_stale = true;
                 Ok(Some((texture, size)))
             }
@@ -354,7 +354,7 @@ fn open_window(event_loop: &ActiveEventLoop, size: [u32; 2]) -> Result<Arc<Windo
     Ok(Arc::new(event_loop.create_window(attributes).context("no window could be opened")?))
 }
 
-/// egui's part of a window.
+/// Makes egui's state for a window.
 fn egui_state(window: &Window, viewer: &Viewer) -> egui_winit::State {
     egui_winit::State::new(
         viewer.interface.context.clone(),

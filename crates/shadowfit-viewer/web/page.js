@@ -1,5 +1,5 @@
-// The page around the viewer, which runs in a worker: hands it keys, pointers, sizes and files, and does for it what only
-// a page can: store, download, copy, open.
+// The page around the viewer, which runs in a worker. The page sends it keys, pointers, sizes and files, and
+// does everything that only a page can: store, download, copy, open.
 
 import { sizes } from './sizes.js';
 
@@ -8,7 +8,7 @@ const element = (id) => document.getElementById(id);
 const [canvas, typing, files, cover] = ['canvas', 'typing', 'files', 'cover'].map(element);
 const asked = new URLSearchParams(location.search);
 
-/// What to do about each way in which it can end.
+/// Advice for each kind of end.
 const ADVICE = {
   none:
     'This browser has neither WebGPU nor WebGL2 turned on. A current Chrome, Edge, Firefox or Safari has; if yours is, '
@@ -19,7 +19,7 @@ const ADVICE = {
   failure: 'Load the page again; if that does not help, please report the text above.',
 };
 
-/// Ends the page with a message. What the browser says of the worker after that follows from it, and is not shown.
+/// Ends the page with a message. Later errors of the worker follow from the first one, and are not shown.
 function show(state, advice) {
   if (cover.classList.contains('failed')) {
     return;
@@ -39,10 +39,10 @@ const worker = new Worker(new URL('worker.js', import.meta.url), { type: 'module
 const tell = (...message) => worker.postMessage(message);
 const questions = [];
 let isTyping = false;
-/// Whether a button of the mouse is held.
+/// Whether a mouse button is pressed.
 let isPressed = false;
 
-/// For tests, and for whoever is curious in the console.
+/// For tests, and for use in the console.
 window.viewer = {
   facts: () => new Promise((resolve) => {
     questions.push(resolve);
@@ -51,7 +51,7 @@ window.viewer = {
   tell,
 };
 
-/// Local storage, which a browser may forbid.
+/// Reads or writes local storage, which a browser may forbid.
 const stored = (key, text) => {
   try {
     return text === undefined ? localStorage.getItem(key) : localStorage.setItem(key, text);
@@ -152,7 +152,7 @@ const told = {
 worker.onmessage = ({ data: [kind, value, name] }) => told[kind](value, name);
 worker.onerror = (event) => show(event.message ?? 'The viewer cannot be loaded.', ADVICE.failure);
 
-/// Where the clipboard is closed to pages, by way of a selected text.
+/// Copies a text by selecting it, for pages without access to the clipboard.
 function copyByHand(text) {
   typing.value = text;
   typing.select();
@@ -168,7 +168,7 @@ const pixels = () => [innerWidth, innerHeight].map((side) => Math.max(1, Math.ro
 new ResizeObserver(([{ devicePixelContentBoxSize: box }]) => {
   const rounded = pixels();
   const exact = box ? [box[0].inlineSize, box[0].blockSize] : rounded;
-  // Browsers that pretend to have another screen tell the size on their own.
+  // Browsers that emulate another screen report a wrong exact size.
   const isPlausible = exact.every((side, axis) => Math.abs(side - rounded[axis]) <= 2);
   tell('resize', ...(isPlausible ? exact : rounded), devicePixelRatio);
 }).observe(canvas);
@@ -192,8 +192,8 @@ function held(event) {
   }
 }
 
-/// Whether a key is left to the browser: its own function keys, and what it does with Control or Command but for the
-/// letters that the viewer undoes with.
+/// Returns whether a key is left to the browser: its function keys, and keys with Control or Command, except
+/// for the letters of undo and redo.
 function isOfBrowser({ key, ctrlKey, metaKey, altKey }) {
   if (/^F(5|6|7|11|12)$/.test(key)) {
     return true;
@@ -244,12 +244,13 @@ addEventListener('paste', (event) => {
 
 // ---- pointers
 
-/// Where the mouse is, in points: beyond the page, too, while it is locked.
+/// Position of the mouse, in points. It may leave the page while the mouse is locked.
 let place = [0, 0];
 const at = ({ clientX, clientY }) => [clientX, clientY];
 const isLocked = () => document.pointerLockElement === canvas;
 
-/// Keeps the mouse on the page, unseen, so that it can turn the camera without end; Esc gives it back. Browsers may refuse.
+/// Locks and hides the mouse, so that it can turn the camera without limit; Esc unlocks it. Browsers may
+/// refuse.
 function lock() {
   Promise.resolve(canvas.requestPointerLock?.()).catch(() => {});
 }
@@ -348,7 +349,7 @@ addEventListener('gamepadconnected', () => {
 
 // ---- files
 
-/// Hands over files that were chosen together, and opens the one that the others belong to.
+/// Sends files that were chosen together to the viewer, and opens the main one.
 async function open(list) {
   const chosen = [...list];
   const main = chosen.find(({ name }) => /\.(glb|gltf)$/i.test(name)) ?? chosen[0];

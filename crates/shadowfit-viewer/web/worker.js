@@ -1,13 +1,13 @@
-// Runs the viewer: loads its module, hands it what the page tells, and draws frames.
+// Runs the viewer: loads its module, passes the page's messages to it, and draws frames.
 
 const waiting = [];
 let viewer = null;
 
-/// What the viewer tells the page when nothing can follow.
+/// Messages to the page after which the viewer cannot continue.
 const ENDINGS = ['panic', 'lost', 'memory', 'failure'];
 let isOver = false;
 
-/// Tells the page that it is over, and why: no frame follows.
+/// Ends the viewer, and tells the page why. No frame follows.
 function end(kind, text) {
   if (!isOver) {
     isOver = true;
@@ -24,8 +24,8 @@ self.tellPage = (kind, value, name) => {
   postMessage([kind, value, name], transferred);
 };
 
-/// Pixels of an encoded image: width, height, and four bytes each. A canvas would multiply them by their opacity, and lose
-/// the colours of what is cut out; textures do not.
+/// Returns the pixels of an encoded image: width, height, and four bytes each. A canvas would multiply
+/// colours by their opacity, and lose the colours of transparent pixels, so a texture is used.
 self.decodeImage = async (bytes) => {
   const options = { premultiplyAlpha: 'none', colorSpaceConversion: 'none' };
   const picture = await createImageBitmap(new Blob([bytes]), options);
@@ -46,7 +46,7 @@ self.decodeImage = async (bytes) => {
   return [width, height, rgba];
 };
 
-/// The module's bytes, compiled while they arrive; the page is told how many have.
+/// Returns the module's bytes, to be compiled while they arrive, and reports their progress to the page.
 async function fetched(url, bytes) {
   const answer = await fetch(url);
   if (!answer.ok) {
@@ -64,7 +64,7 @@ async function fetched(url, bytes) {
   return new Response(answer.body.pipeThrough(counted), { headers });
 }
 
-/// Which graphics API the browser has: `wanted` if it is given, where `none` stands for a browser without any.
+/// Returns the browser's graphics API. `wanted` overrides it, and `none` means a browser without any.
 async function api(wanted) {
   if (wanted) {
     return wanted === 'none' ? null : wanted;
@@ -87,8 +87,8 @@ function call([method, ...values]) {
   }
 }
 
-/// What errors say where there is no memory. A module that stops without a panic, which the page has been told of before,
-/// has asked for more than there is, too.
+/// Texts of errors for lack of memory. A module that stops without a panic, which would have been reported
+/// before, has also run out of memory.
 const WITHOUT_MEMORY = /malloc|allocation failed|out of memory/i;
 
 function failed(error) {
@@ -129,7 +129,7 @@ async function start({ canvas, width, height, scale, kept, page, fragment, wante
   requestAnimationFrame(frame);
 }
 
-// What goes wrong between frames.
+// Errors between frames.
 addEventListener('error', ({ error, message }) => failed(error ?? message));
 
 onmessage = ({ data }) => {

@@ -1,7 +1,7 @@
-//! The package for Bevy, outside the workspace: checked and tested where a Rust is installed that builds Bevy. Building
-//! Bevy takes nearly all of the time, so lints, docs and tests share one build. `cargo clippy` and `cargo doc` would each
-//! need a second one: clippy compiles the package in place of the compiler, and the documentation is written where the
-//! documentation's tests are run.
+//! The package for Bevy, outside the workspace. It is checked and tested if a Rust is installed that builds
+//! Bevy. Building Bevy takes nearly all of the time, so lints, docs and tests share one build, where `cargo
+//! clippy` and `cargo doc` would each need another one: clippy compiles the package in place of rustc, and
+//! the documentation is written when its tests run.
 
 use std::process::Command;
 
@@ -11,16 +11,16 @@ use crate::process;
 use crate::rustdoc;
 use crate::setup::{self, Purpose};
 
-/// The reason for which the package is left out.
-const NO_RUST: &str = "no Rust 1.97 or newer here, which Bevy asks for";
+/// The reason for skipping the package.
+const NO_RUST: &str = "no Rust 1.97 or newer here, which Bevy needs";
 
-/// The least Rust that builds Bevy 0.20.1: it states 1.97.1, and is content with what came before that.
+/// The oldest Rust that builds Bevy 0.20.1. Bevy states 1.97.1, but also builds with 1.97.
 const LEAST: (u32, u32) = (1, 97);
 
 /// Lints, documents and tests the package, except tests that the machine cannot run.
 ///
 /// # Errors
-/// When a lint, a link of the documentation or a test fails.
+/// If a lint, a link of the documentation or a test fails.
 pub(crate) fn check_and_test() -> Result<()> {
     let machine = setup::prepare(Purpose::Test)?;
     let Some(rust) = Rust::find() else {
@@ -32,7 +32,7 @@ pub(crate) fn check_and_test() -> Result<()> {
     if process::succeeds(rust.plain_cargo("clippy").arg("--version")) {
         process::with_lints(&mut tests);
     } else {
-        println!("lints of bevy-shadowfit were not looked at: its Rust has no clippy");
+        println!("lints of bevy-shadowfit were not checked: its Rust has no clippy");
     }
     rustdoc::write_documentation(&mut tests)?;
     if !machine.can_test_window() {
@@ -44,14 +44,14 @@ pub(crate) fn check_and_test() -> Result<()> {
 
 /// A Rust that builds Bevy.
 pub(crate) struct Rust {
-    /// Its name to rustup; `None` for the one in use.
+    /// Name in rustup, or `None` for the Rust in use.
     toolchain: Option<String>,
-    /// The line that its compiler prints of itself.
+    /// First line of the compiler's `--version`.
     pub(crate) version: String,
 }
 
 impl Rust {
-    /// The one in use, else the first that rustup has.
+    /// Returns the Rust in use if it builds Bevy, else the first toolchain of rustup that does.
     pub(crate) fn find() -> Option<Self> {
         let used = process::output_of(Command::new("rustc").arg("--version"));
         if let Some(version) = used.filter(|text| is_enough(text)) {
@@ -65,7 +65,7 @@ impl Rust {
         })
     }
 
-    /// A cargo command by this Rust.
+    /// Returns a cargo command with this Rust.
     fn plain_cargo(&self, subcommand: &str) -> Command {
         let Some(name) = &self.toolchain else { return process::cargo(subcommand) };
         let mut command = Command::new("rustup");
@@ -73,13 +73,13 @@ impl Rust {
         command
     }
 
-    /// The same in the package's folder.
+    /// Returns a cargo command with this Rust, run in the package's folder.
     fn cargo(&self, subcommand: &str) -> Command {
         let mut command = self.plain_cargo(subcommand);
         command.current_dir(process::root().join("crates/bevy-shadowfit"));
         command.env("CARGO_TARGET_DIR", process::target_folder().join("bevy"));
         command.args(["--locked", "--ignore-rust-version"]);
-        // Tests need neither speed nor a debugger, and Bevy is built in half the time.
+        // Tests need neither speed nor a debugger, and Bevy builds in half the time.
         for setting in ["opt-level=0", "package.'*'.opt-level=0", "debug=false"] {
             command.args(["--config", &format!("profile.dev.{setting}")]);
         }
@@ -87,12 +87,12 @@ impl Rust {
     }
 }
 
-/// Whether the compiler that printed its version builds Bevy.
+/// Returns whether a compiler builds Bevy, given its version text.
 fn is_enough(printed: &str) -> bool {
     version(printed).is_some_and(|version| version >= LEAST)
 }
 
-/// Major and minor number of what `rustc --version` prints.
+/// Returns major and minor version from the output of `rustc --version`.
 fn version(printed: &str) -> Option<(u32, u32)> {
     let mut numbers = printed.split_whitespace().nth(1)?.split('.').map(|number| number.parse().ok());
     Some((numbers.next()??, numbers.next()??))

@@ -1,5 +1,5 @@
-//! Makes a module that browsers load of what the compiler built: `bindgen MODULE.wasm FOLDER`. A program of its own, so
-//! that the other tasks need not build the library that does it.
+//! Converts a compiled module for browsers: `bindgen MODULE.wasm FOLDER`. It is a separate program, so that
+//! the other tasks need not build the converter library.
 
 use anyhow::{Context, Result};
 use wasm_bindgen_cli_support::Bindgen;

@@ -1,8 +1,8 @@
-//! `cargo xtask bundle`: the tests and the examples as programs, with a runner that needs no Rust, for machines without a
+//! `cargo xtask bundle`: the tests and the examples as programs, with a runner, for machines without a Rust
 //! toolchain.
 //!
-//! The bundle keeps the layout of the repository, `workspace/target/debug/deps` included: a test finds the files of its
-//! package and the examples that it starts in the same places relative to itself.
+//! The bundle keeps the layout of the repository, including `workspace/target/debug/deps`, so that tests find
+//! the files of their package and the examples that they start at the same relative paths.
 
 #[cfg(all(test, target_os = "linux"))]
 mod runner_tests;
@@ -21,10 +21,11 @@ use crate::setup::{self, Purpose};
 /// The runner, in POSIX shell.
 const RUNNER: &str = include_str!("bundle/run.sh");
 
-/// The list of tests that the runner reads: program, folder of its package and name, separated by tabs.
+/// The list of tests for the runner: program, folder of its package and name, separated by tabs.
 const TESTS: &str = "tests.txt";
 
-/// Tracked files that no test of the bundle reads: pictures, and the golden pictures, which are drawn on one driver alone.
+/// Tracked files that no test of the bundle reads: pictures, and the golden pictures, which need one
+/// particular driver.
 const LEFT_OUT: [&str; 4] = ["docs/images/", "docs/samples/", "tests/golden/", "crates/shadowfit-egui/tests/golden/"];
 
 /// The package whose tests concern the development tasks themselves.
@@ -40,7 +41,7 @@ struct Program {
     kind: Kind,
 }
 
-/// A kind of program, each in a folder of its own.
+/// A kind of program. Each kind has its own folder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
     Test,
@@ -50,7 +51,7 @@ enum Kind {
 }
 
 impl Program {
-    /// Returns the folder below the folder of the profile.
+    /// Returns the subfolder of the profile's folder.
     fn place(&self) -> &'static str {
         match self.kind {
             Kind::Test => "deps",
@@ -60,13 +61,13 @@ impl Program {
     }
 }
 
-/// Writes the bundle into `folder`, with OpenGL beside Vulkan if `gles`.
+/// Writes the bundle into `folder`. `gles` adds OpenGL to Vulkan.
 ///
 /// # Errors
-/// When the folder has files, or a program cannot be built or copied.
+/// If the folder is not empty, or a program cannot be built or copied.
 pub(crate) fn bundle(folder: &Path, gles: bool) -> Result<()> {
     let is_empty = fs::read_dir(folder).map_or(true, |mut entries| entries.next().is_none());
-    ensure!(is_empty, "{} is not empty: a bundle needs a folder of its own", folder.display());
+    ensure!(is_empty, "{} is not empty: a bundle needs an empty folder", folder.display());
     let machine = setup::prepare(Purpose::Pictures)?;
     let mut features = setup::features(&machine).join(" ");
     if gles {
@@ -87,12 +88,12 @@ pub(crate) fn bundle(folder: &Path, gles: bool) -> Result<()> {
     fs::write(folder.join(TESTS), list)?;
     write_runner(&folder.join("run.sh"))?;
     println!("the bundle is in {0}. Run it with: {0}/run.sh [--adapter NAME] [FILTER...]", folder.display());
-    // The programs have most of their code in common, which a dictionary larger than a program finds.
+    // The programs share most of their code. A dictionary that is larger than a program finds it.
     println!("pack it with: XZ_OPT=--lzma2=preset=4,dict=512MiB tar -C {} -cJf bundle.tar.xz .", folder.display());
     Ok(())
 }
 
-/// A folder that is written into the list, where an empty word would be lost.
+/// Returns the text of a folder for the list, where an empty word would be lost.
 fn package_path(package: &Path) -> String {
     if package.as_os_str().is_empty() { ".".into() } else { package.display().to_string() }
 }
@@ -115,7 +116,7 @@ fn built(features: &[&str]) -> Result<Vec<Program>> {
     Ok(programs)
 }
 
-/// Returns the program of one of Cargo's messages, if it belongs into the bundle.
+/// Returns the program of one of Cargo's messages, if it belongs in the bundle.
 fn program(message: &Value) -> Option<Program> {
     let file = PathBuf::from(message["executable"].as_str()?);
     let manifest = Path::new(message["manifest_path"].as_str()?);
@@ -138,7 +139,7 @@ fn program(message: &Value) -> Option<Program> {
 fn copy_files(workspace: &Path) -> Result<()> {
     let listed = Command::new("git").args(["ls-files", "-z"]).current_dir(root()).output();
     let listed = listed.ok().filter(|output| output.status.success()).context("`git ls-files` fails")?;
-    let names = String::from_utf8(listed.stdout).context("a file's name is no UTF-8")?;
+    let names = String::from_utf8(listed.stdout).context("a file's name is not UTF-8")?;
     let is_wanted = |name: &&str| !name.is_empty() && !LEFT_OUT.iter().any(|folder| name.starts_with(folder));
     for name in names.split('\0').filter(is_wanted) {
         let (from, to) = (root().join(name), workspace.join(name));
@@ -153,10 +154,10 @@ fn copy_files(workspace: &Path) -> Result<()> {
 
 fn make_parent(file: &Path) -> Result<()> {
     let folder = file.parent().unwrap_or(file);
-    fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()))
+    fs::create_dir_all(folder).with_context(|| format!("cannot create {}", folder.display()))
 }
 
-/// Copies a program without its symbols, which are most of it.
+/// Copies a program without its symbols, which are most of its size.
 fn copy_stripped(from: &Path, to: &Path) -> Result<()> {
     make_parent(to)?;
     let strip = Command::new("strip").arg("-o").arg(to).arg(from).stderr(Stdio::inherit()).status();

@@ -1,8 +1,9 @@
-//! `cargo xtask ci`: every check that comes before the tests, in the order in which a mistake shows soonest, stopping
-//! at the first failure. `.ci/run` calls this and then `cargo xtask test`.
+//! `cargo xtask ci`: every check before the tests, in an order that shows mistakes early. Stops at the first
+//! failure. `.ci/run` calls this and then `cargo xtask test`.
 
 mod circles;
 pub(crate) mod portability;
+mod prose;
 mod size;
 
 use std::process::Command;
@@ -15,16 +16,17 @@ use crate::machine::Machine;
 use crate::process;
 use crate::setup::{self, Purpose};
 
-/// One named check.
+/// A named check.
 struct Step {
     name: &'static str,
     check: fn(&Machine) -> Result<()>,
 }
 
-const STEPS: [Step; 12] = [
+const STEPS: [Step; 13] = [
     Step { name: "format", check: format },
     Step { name: "import circles", check: circles::check },
     Step { name: "lines of code", check: size::check },
+    Step { name: "prose", check: prose::check },
     Step { name: "generated text", check: |_| generate::check() },
     Step { name: "dependencies", check: dependencies },
     Step { name: "no_std build of the core", check: portability::no_std },
@@ -39,7 +41,7 @@ const STEPS: [Step; 12] = [
 /// Prepares the machine and runs the checks.
 ///
 /// # Errors
-/// When a check fails; the later ones are then not run.
+/// If a check fails. Later checks are then not run.
 pub(crate) fn ci() -> Result<()> {
     let machine = setup::prepare(Purpose::Pictures)?;
     let mut done: Vec<(&str, Duration)> = Vec::new();
@@ -62,7 +64,7 @@ fn format(_: &Machine) -> Result<()> {
 }
 
 fn dependencies(_: &Machine) -> Result<()> {
-    // A stale lock file is a mistake of its own; every later step would mend it silently.
+    // Check for a stale lock file first: every later step would update it silently.
     let locked = process::cargo("metadata").args(["--locked", "--format-version", "1"]).output()?;
     if !locked.status.success() {
         bail!("Cargo.lock is not up to date: {}", String::from_utf8_lossy(&locked.stderr).trim());
@@ -82,7 +84,7 @@ fn dependencies(_: &Machine) -> Result<()> {
 
 fn lints(machine: &Machine) -> Result<()> {
     if process::lints_tests() {
-        println!("looked at where the tests are compiled");
+        println!("checked while the tests are compiled");
         return Ok(());
     }
     let features = setup::features(machine);
@@ -93,7 +95,7 @@ fn lints(machine: &Machine) -> Result<()> {
 
 fn docs(machine: &Machine) -> Result<()> {
     if process::lints_tests() {
-        println!("written where the examples in them are tested");
+        println!("written while their examples are tested");
         return Ok(());
     }
     let features = setup::features(machine);
@@ -102,14 +104,14 @@ fn docs(machine: &Machine) -> Result<()> {
     )
 }
 
-/// Checks the workspace with the oldest Rust that it promises. Where that is the Rust in use, every other step is this
-/// check already.
+/// Checks the workspace with the oldest supported Rust. If that is the Rust in use, every other step is
+/// already this check.
 fn msrv(machine: &Machine) -> Result<()> {
     let manifest = std::fs::read_to_string(process::root().join("Cargo.toml"))?;
     let promised = rust_version(&manifest).context("the workspace's Cargo.toml states no rust-version")?;
     let used = process::output_of(Command::new("rustc").arg("--version")).context("rustc does not start")?;
     if is_release(&used, promised) {
-        println!("Rust {promised} is promised, and everything here is built with it: {}", used.trim());
+        println!("the minimum is Rust {promised}, and everything here is built with it: {}", used.trim());
         return Ok(());
     }
     process::run(Command::new("rustup").args(["toolchain", "install", promised, "--profile", "minimal"]))?;
@@ -123,13 +125,14 @@ fn msrv(machine: &Machine) -> Result<()> {
     )
 }
 
-/// The first `rust-version` in a manifest.
+/// Returns the first `rust-version` in a manifest.
 fn rust_version(manifest: &str) -> Option<&str> {
     let value = manifest.lines().find_map(|line| line.trim().strip_prefix("rust-version"))?;
     value.split('"').nth(1)
 }
 
-/// Whether what `rustc --version` prints is of the release `version`, given as major.minor or major.minor.patch.
+/// Returns whether the output of `rustc --version` is of release `version` (major.minor or
+/// major.minor.patch).
 fn is_release(rustc: &str, version: &str) -> bool {
     let Some(number) = rustc.split_whitespace().nth(1) else { return false };
     number == version || number.strip_prefix(version).is_some_and(|rest| rest.starts_with('.'))

@@ -1,6 +1,6 @@
-//! Makes a moving picture of still ones: `film FOLDER MILLISECONDS FILE.webp`. Each PNG file of the folder is named by
-//! when it comes on, in milliseconds; the last one goes when the given time is over. A program of its own, so that the
-//! other tasks need not build the library that does it.
+//! Makes an animated picture from still ones: `film FOLDER MILLISECONDS FILE.webp`. The name of each PNG file
+//! in the folder is its start time in milliseconds, and the last one ends at the given time. It is a separate
+//! program, so that the other tasks need not build the encoder library.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -9,7 +9,8 @@ use anyhow::{Context, Result, ensure};
 use image::RgbaImage;
 use webp_animation::{Encoder, EncoderOptions, EncodingConfig, EncodingType, LossyEncodingConfig};
 
-/// Quality of what moves, of 100: low enough for two megabytes, high enough for small text and thin stripes.
+/// Quality of lossy regions, of 100: low enough for two megabytes, high enough for small text and thin
+/// stripes.
 const QUALITY: f32 = 66.0;
 
 fn main() -> Result<()> {
@@ -17,7 +18,7 @@ fn main() -> Result<()> {
     let (Some(folder), Some(end), Some(film)) = (arguments.next(), arguments.next(), arguments.next()) else {
         anyhow::bail!("film FOLDER MILLISECONDS FILE.webp");
     };
-    let end: i32 = end.parse().with_context(|| format!("{end}: no number of milliseconds"))?;
+    let end: i32 = end.parse().with_context(|| format!("{end}: not a number of milliseconds"))?;
     let frames = frames(Path::new(&folder))?;
     let (_, first) = frames.first().with_context(|| format!("{folder}: no frames"))?;
     let size = open(first)?.dimensions();
@@ -31,7 +32,7 @@ fn main() -> Result<()> {
     fs::write(&film, &data[..]).with_context(|| format!("{film}: cannot be written"))
 }
 
-/// The frames of a folder in the order in which they are shown, each behind its time in milliseconds.
+/// Returns the frames of a folder in order, each with its start time in milliseconds.
 fn frames(folder: &Path) -> Result<Vec<(i32, PathBuf)>> {
     let mut frames = Vec::new();
     for entry in fs::read_dir(folder).with_context(|| format!("{}: cannot be read", folder.display()))? {
@@ -43,7 +44,7 @@ fn frames(folder: &Path) -> Result<Vec<(i32, PathBuf)>> {
     Ok(frames)
 }
 
-/// What moves is lossy; where a part of a frame is smaller without loss, such as plain text, it is kept as it is.
+/// Returns the encoding options: lossy, except where lossless is smaller, such as plain text.
 fn options() -> EncoderOptions {
     let lossy = LossyEncodingConfig { use_sharp_yuv: true, ..LossyEncodingConfig::default() };
     let encoding_type = EncodingType::Lossy(lossy);

@@ -1,5 +1,5 @@
-//! `cargo xtask gallery`: renders the pictures that the README and the docs show, on the software driver, so that they
-//! change with the code and not with the machine.
+//! `cargo xtask gallery`: renders the pictures of the README and the docs with the software driver, so that
+//! they change with the code and not with the machine.
 
 mod film;
 
@@ -18,19 +18,20 @@ use crate::process;
 use crate::run;
 use crate::setup::{self, Purpose};
 
-/// Where the docs keep their pictures, relative to the workspace's folder.
+/// Folder of the docs' pictures, relative to the workspace's folder.
 const IMAGES: &str = "docs/images";
 
-/// Size of a picture of the docs in pixels: half of full HD each way, wide enough to see single shadow texels.
+/// Size of a picture of the docs, in pixels: half of full HD each way, large enough to show single shadow
+/// texels.
 const SIZE: &str = "960x540";
 
-/// The script that makes the pictures of the viewer's tour, relative to the workspace's folder.
+/// Script for the pictures of the viewer's tour, relative to the workspace's folder.
 const TOUR: &str = "examples/viewer/tour.txt";
 
 /// Size of the viewer's window at the beginning of the tour, in pixels.
 const WINDOW: &str = "1280x720";
 
-/// Those of the viewer's own set of pictures that the docs show.
+/// Pictures of the viewer's own set that the docs show.
 const SHOWN: [&str; 13] = [
     "final",
     "maps",
@@ -47,66 +48,69 @@ const SHOWN: [&str; 13] = [
     "hole-fixed",
 ];
 
-/// Most bytes of a picture of the docs, which every clone of the repository holds.
+/// Size limit of a picture of the docs, in bytes, since every clone of the repository contains it.
 const MOST_BYTES: u64 = 500_000;
 
-/// Most bits that a colour channel may lose for that: steps of eight levels of 255 are still hard to see.
+/// Greatest number of bits that a colour channel may lose for that: steps of 8 of 255 levels are still hard
+/// to see.
 const MOST_BITS: u32 = 3;
 
 /// Pages of the classic samples, each named after its sample, relative to the workspace's folder.
 const SAMPLE_PAGES: &str = "docs/samples";
 
-/// Folder of their pictures below that of the docs.
+/// Folder of the samples' pictures below the folder of the docs' pictures.
 const SAMPLE_IMAGES: &str = "samples";
 
-/// Most bytes of a picture of a sample, if dropping two bits of its colours reaches that: there are many of them.
+/// Size limit of a sample's picture, in bytes, unless dropping two bits of its colours is not enough. There
+/// are many of them.
 const MOST_SAMPLE_BYTES: u64 = 200_000;
 
-/// The view that errors are shown in, relative to the workspace's folder.
+/// View for the pictures of errors, relative to the workspace's folder.
 const ERROR_VIEW: &str = "docs/gallery/error-view.toml";
 
-/// Techniques whose errors are shown.
+/// Techniques in the pictures of errors.
 const WRONG: [&str; 2] = ["xna-1", "windows-4"];
 
-/// The walk that shadows are compared on, relative to the workspace's folder.
+/// Walk for comparing shadows, relative to the workspace's folder.
 const WALK: &str = "docs/gallery/walk.toml";
 
-/// Techniques whose shadows are compared, and how their pictures are named.
+/// Techniques whose shadows are compared, and the names of their pictures.
 const COMPARED: [(&str, &str); 3] =
     [("docs/gallery/bevy.toml", "bevy"), ("stable-4", "stable-4"), ("windows-4", "windows-4")];
 
-/// Filtered and traced edges of coarse maps, each the technique and how its picture is named, and what makes maps coarse.
+/// Filtered and traced edges of coarse maps: the techniques and the names of their pictures. Then the options
+/// for coarse maps.
 const TRACED: [(&str, &str); 2] = [("windows-4", "filtered"), ("exact-4", "traced")];
 const COARSE: [&str; 2] = ["--resolution", "512"];
 
 /// Techniques whose edges are compared from frame to frame: a tight fit that is not held, and windows.
 const EDGES: [&str; 2] = ["histogram-4", "windows-4"];
 
-/// Frames of the walk that edges are shown in: the last ones, when windows have settled.
+/// Frames of the walk for comparing edges: the last ones, after windows have settled.
 const EDGE_FRAMES: [&str; 5] = ["path-16", "path-18", "path-20", "path-22", "path-24"];
 
-/// Maps and filter of those edges: coarse and plain, so that each texel shows.
+/// Options for comparing edges: coarse maps without a filter, so that each texel shows.
 const EDGE_MAPS: [&str; 4] = ["--resolution", "512", "--filter", "point"];
 
-/// A part of a picture: its left and upper side, width and height, in pixels.
+/// A part of a picture: left side, upper side, width and height, in pixels.
 type Part = [u32; 4];
 
-/// The lattice's shadow, and how many times it is enlarged to be as large as the docs' pictures.
+/// The lattice's shadow, and its magnification to the size of the docs' pictures.
 const SHADOW: (Part, u32) = ([446, 206, 192, 108], 5);
 
-/// The corner of that shadow, and how many times it is enlarged for five of it to be as wide.
+/// The corner of that shadow, and the magnification at which five of it have the width of the docs' pictures.
 const CORNER: (Part, u32) = ([458, 246, 47, 47], 4);
 
-/// The word that asks for the film alone.
+/// The argument that renders only the film.
 const FILM: &str = "film";
 
-/// Between pictures of a strip, in pixels.
+/// Gap between pictures of a strip, in pixels.
 const GAP: u32 = 5;
 
-/// Renders the docs' pictures, or those of some samples or the film alone.
+/// Renders the docs' pictures. `only` limits them to some samples or the film.
 ///
 /// # Errors
-/// When the viewer or the report cannot be built, or ends with an error.
+/// If the viewer or the report cannot be built, or ends with an error.
 pub(crate) fn gallery(only: &[String]) -> Result<()> {
     let machine = setup::prepare(Purpose::Pictures)?;
     let images = process::root().join(IMAGES);
@@ -130,7 +134,7 @@ pub(crate) fn gallery(only: &[String]) -> Result<()> {
     Ok(())
 }
 
-/// The pictures of the viewer's tour, whatever its script saves.
+/// Renders all pictures of the viewer's tour that its script saves.
 fn tour(machine: &Machine, images: &Path) -> Result<()> {
     let folder = empty_folder("tour")?;
     let mut viewer = run::viewer(machine);
@@ -145,7 +149,7 @@ fn tour(machine: &Machine, images: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Those of the viewer's own set of pictures that the docs show.
+/// Renders the pictures of the viewer's own set that the docs show.
 fn own_set(machine: &Machine, images: &Path) -> Result<()> {
     let folder = empty_folder("set")?;
     let mut viewer = run::viewer(machine);
@@ -158,7 +162,7 @@ fn own_set(machine: &Machine, images: &Path) -> Result<()> {
     Ok(())
 }
 
-/// The pictures that the pages of classic samples show, of all that each sample renders.
+/// Renders the classic samples, and publishes the pictures that their pages show.
 fn sample_pages(machine: &Machine, images: &Path, is_wanted: impl Fn(&str) -> bool) -> Result<()> {
     let pages = process::root().join(SAMPLE_PAGES);
     fs::create_dir_all(images).with_context(|| format!("{}: cannot be made", images.display()))?;
@@ -183,13 +187,13 @@ fn sample_pages(machine: &Machine, images: &Path, is_wanted: impl Fn(&str) -> bo
     Ok(())
 }
 
-/// Files of samples' pictures that a page shows.
+/// Returns the files of samples' pictures that a page shows.
 fn sample_pictures(page: &str) -> impl Iterator<Item = &str> {
     let links = page.split("images/samples/").skip(1).filter_map(|rest| rest.split_once(')'));
     links.map(|(file, _)| file)
 }
 
-/// An empty folder below `target`, for pictures that the docs do not all show as they are.
+/// Creates an empty folder below `target`, for pictures that are selected or changed before publishing.
 fn empty_folder(name: &str) -> Result<PathBuf> {
     let folder = process::root().join("target/gallery").join(name);
     if folder.exists() {
@@ -199,15 +203,15 @@ fn empty_folder(name: &str) -> Result<PathBuf> {
     Ok(folder)
 }
 
-/// Copies a picture to the docs. One that is too large loses the lowest bits of its colours, which compress worst and are
-/// seen least, until it is not.
+/// Copies a picture to the docs. While it is too large, drops the lowest bits of its colours, which compress
+/// worst and are least visible.
 fn publish(from: &Path, to: &Path) -> Result<()> {
     publish_within(from, to, MOST_BYTES, MOST_BITS)?;
     ensure!(bytes(to)? <= MOST_BYTES, "{}: more than {MOST_BYTES} bytes; make it smaller", to.display());
     Ok(())
 }
 
-/// The same, with no more bits lost than these, whatever its size is then.
+/// Copies a picture, dropping at most `most_bits` bits even if it stays too large.
 fn publish_within(from: &Path, to: &Path, most_bytes: u64, most_bits: u32) -> Result<()> {
     fs::copy(from, to).with_context(|| format!("{}: cannot be copied", from.display()))?;
     for bits in 1..=most_bits {
@@ -228,14 +232,14 @@ fn bytes(file: &Path) -> Result<u64> {
     Ok(data.len())
 }
 
-/// Saves a picture in as few bytes as its format allows.
+/// Saves a picture with the strongest compression.
 fn save_small(picture: &RgbImage, file: &Path) -> Result<()> {
     let written = fs::File::create(file).with_context(|| format!("{}: cannot be made", file.display()))?;
     let encoder = PngEncoder::new_with_quality(written, CompressionType::Best, png::FilterType::Adaptive);
     picture.write_with_encoder(encoder).with_context(|| format!("{}: cannot be written", file.display()))
 }
 
-/// The errors and the texels of techniques in one view, as the report marks them.
+/// Renders the errors and the texels of techniques in one view, as the report marks them.
 fn errors(images: &Path) -> Result<()> {
     let pictures = report("errors", ERROR_VIEW, &WRONG, &["path-0"], &[])?;
     for (place, technique) in WRONG.iter().enumerate() {
@@ -248,7 +252,7 @@ fn errors(images: &Path) -> Result<()> {
     Ok(())
 }
 
-/// The same shadow by several techniques, enlarged.
+/// Renders the same shadow with several techniques, enlarged.
 fn shadows(images: &Path) -> Result<()> {
     let techniques = COMPARED.map(|(technique, _)| technique);
     let pictures = report("shadows", WALK, &techniques, &["path-24"], &[])?;
@@ -259,7 +263,7 @@ fn shadows(images: &Path) -> Result<()> {
     traced(images)
 }
 
-/// The same shadow of coarse maps, filtered and traced, enlarged.
+/// Renders the same shadow of coarse maps, filtered and traced, enlarged.
 fn traced(images: &Path) -> Result<()> {
     let pictures = report("traced", WALK, &TRACED.map(|(technique, _)| technique), &["path-24"], &COARSE)?;
     for (place, (technique, name)) in TRACED.iter().enumerate() {
@@ -269,7 +273,7 @@ fn traced(images: &Path) -> Result<()> {
     Ok(())
 }
 
-/// The same edge in some frames of the walk, side by side, by several techniques.
+/// Renders the same edge in some frames of the walk, side by side, with several techniques.
 fn edges(images: &Path) -> Result<()> {
     let pictures = report("edges", WALK, &EDGES, &EDGE_FRAMES, &EDGE_MAPS)?;
     for (place, technique) in EDGES.iter().enumerate() {
@@ -287,7 +291,8 @@ fn edges(images: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Runs the report on the built-in scene and returns the folder of its pictures. Frames are named as their files are.
+/// Runs the report on the built-in scene. Returns the folder of its pictures. Frames have the names of their
+/// files.
 fn report(name: &str, path: &str, techniques: &[&str], frames: &[&str], more: &[&str]) -> Result<PathBuf> {
     let out = process::root().join("target/gallery-report").join(name);
     let mut report = process::cargo("run");
@@ -314,7 +319,7 @@ fn report(name: &str, path: &str, techniques: &[&str], frames: &[&str], more: &[
     Ok(out.join("pictures"))
 }
 
-/// A part of a picture, its pixels as squares.
+/// Returns a part of a picture, enlarged with square pixels.
 fn enlarged(whole: &RgbImage, ([x, y, width, height], by): (Part, u32)) -> RgbImage {
     let part = imageops::crop_imm(whole, x, y, width, height).to_image();
     imageops::resize(&part, width * by, height * by, FilterType::Nearest)

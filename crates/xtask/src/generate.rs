@@ -1,6 +1,7 @@
 //! `cargo xtask generate`: writes the parts of files that repeat other files, so that both stay equal.
 //!
-//! These are the first examples of READMEs and crate docs and, with the feature `tools`, the pictures of docs/MATHS.md.
+//! These are the first examples of READMEs and crate docs and, with the feature `tools`, the pictures of
+//! docs/MATHS.md.
 
 use std::fs;
 
@@ -10,16 +11,16 @@ use anyhow::{Context, Result, ensure};
 use crate::maths;
 use crate::process;
 
-/// Lines around the first example of a page in Markdown, and of a crate's docs.
+/// Lines around the first example of a Markdown page, and of a crate's docs.
 const PAGE: [&str; 2] = ["```rust\n", "```"];
 const DOCS: [&str; 2] = ["//! ```\n", "//! ```"];
-/// Lines around the first example of docs that is compiled and not run.
+/// Lines around the first example of docs that is only compiled.
 const COMPILED_DOCS: [&str; 2] = ["//! ```no_run\n", "//! ```"];
 
 /// Writes the files that are out of date.
 ///
 /// # Errors
-/// When a file cannot be read or written, or lacks the place of its generated part.
+/// If a file cannot be read or written, or lacks the place for its generated part.
 pub(crate) fn generate() -> Result<()> {
     for (name, text) in stale()? {
         fs::write(process::root().join(&name), text).with_context(|| format!("cannot write {name}"))?;
@@ -31,14 +32,14 @@ pub(crate) fn generate() -> Result<()> {
 /// Compares the files with their generated form.
 ///
 /// # Errors
-/// When one is out of date.
+/// If a file is out of date.
 pub(crate) fn check() -> Result<()> {
     let names: Vec<String> = stale()?.into_iter().map(|(name, _)| name).collect();
     ensure!(names.is_empty(), "out of date: {}; run `cargo xtask generate` and look at the diff", names.join(", "));
     Ok(())
 }
 
-/// Returns the files that differ from their generated form, with that form.
+/// Returns the files that differ from their generated form, with the new text.
 fn stale() -> Result<Vec<(String, String)>> {
     let example = read("examples/fit_once.rs")?;
     let example = &example[example.find("\nuse ").context("examples/fit_once.rs uses nothing")? + 1..];
@@ -67,7 +68,7 @@ fn read(name: &str) -> Result<String> {
     fs::read_to_string(process::root().join(name)).with_context(|| format!("cannot read {name}"))
 }
 
-/// Splits a text after the first mark and before the next second one.
+/// Splits a text after the first `begin` and before the next `end`.
 fn around<'a>(text: &'a str, [begin, end]: [&str; 2]) -> Option<[&'a str; 3]> {
     let start = text.find(begin)? + begin.len();
     let end = start + text[start..].find(end)?;

@@ -1,6 +1,6 @@
-//! Suites that have passed on the same files before. The tests of the page and of the package for Bevy build hundreds of
-//! crates, and most changes touch neither: `.ci/run` leaves out a suite whose files have not changed since it last passed
-//! on this machine.
+//! Skipping of suites that passed before on the same files. The tests of the page and of the package for Bevy
+//! build hundreds of crates, and most changes affect neither. `.ci/run` skips such a suite if its files have
+//! not changed since it last passed on this machine.
 
 use std::collections::BTreeSet;
 use std::fmt;
@@ -15,19 +15,19 @@ use crate::bevy;
 use crate::machine::{BROWSERS, Machine};
 use crate::process;
 
-/// The environment variable that lets unchanged suites be left out. Without it every suite runs.
+/// The environment variable that enables the skipping. Without it every suite runs.
 const SKIP_GREEN: &str = "SHADOWFIT_SKIP_GREEN";
 
-/// Files and folders that every suite depends on, besides the packages that it builds.
+/// Files and folders that every suite depends on, in addition to the packages that it builds.
 const OF_ALL: [&str; 6] = [".cargo", ".clippy.toml", "Cargo.toml", "crates/xtask", "rustfmt.toml", "tests/fuzz/src"];
-/// Those that the page needs as well. The viewer's program belongs to its package, but lies elsewhere.
+/// Further files of the page suite. The viewer's program belongs to its package, but is in another folder.
 const OF_PAGE: [&str; 4] = ["Cargo.lock", "docs/images/scene-courtyard.png", "examples/viewer", "tests/web"];
-/// Folders of a package that nothing but its own tests reads.
+/// Folders of a package that only its own tests read.
 const OWN_TESTS: [&str; 2] = ["benches", "tests"];
-/// Files that tests read where the machine has them, relative to the workspace.
+/// Folder of files that tests read if it exists, relative to the workspace.
 const ASSETS: &str = "../shared/assets";
 
-/// A suite that may be left out.
+/// A suite that may be skipped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Suite {
     /// Tests of the page in a browser.
@@ -44,7 +44,7 @@ impl Suite {
         }
     }
 
-    /// The package that it tests, by its folder in `crates`.
+    /// Returns the folder in `crates` of the package under test.
     fn package(self) -> &'static str {
         match self {
             Self::Page => "shadowfit-viewer",
@@ -53,18 +53,18 @@ impl Suite {
     }
 }
 
-/// Runs a suite, and remembers that it passed. Leaves it out if [`SKIP_GREEN`] is set and nothing that it depends on has
-/// changed since it last passed.
+/// Runs a suite and records that it passed. Skips it if [`SKIP_GREEN`] is set and its inputs have not changed
+/// since it last passed.
 ///
 /// # Errors
-/// When the suite fails.
+/// If the suite fails.
 pub(crate) fn unless_unchanged(suite: Suite, run: impl FnOnce() -> Result<()>) -> Result<()> {
     let may_skip = std::env::var(SKIP_GREEN).is_ok_and(|value| !value.is_empty() && value != "0");
     let record = process::target_folder().join("green").join(suite.package());
     run_unless_green(suite, &record, may_skip, || Key::of(suite), run)
 }
 
-/// The same with the file of the record, and with the function that computes the key.
+/// Implements [`unless_unchanged`] for a given record file. `key` computes the key of the suite.
 fn run_unless_green(
     suite: Suite,
     record: &Path,
@@ -75,7 +75,7 @@ fn run_unless_green(
     let name = suite.name();
     let before = key();
     if let Err(error) = &before {
-        eprintln!("{name}: nobody knows whether they are unchanged: {error:#}");
+        eprintln!("{name}: cannot tell whether they are unchanged: {error:#}");
     }
     if may_skip && before.as_ref().is_ok_and(|key| key.is_recorded(record)) {
         println!("{name}: unchanged since their last green run on this machine, skipped");
@@ -86,18 +86,19 @@ fn run_unless_green(
     let _ = fs::remove_file(record);
     run()?;
     match (before, key()) {
-        // A run may install tools. Files that changed meanwhile were tested in part.
+        // The run may have installed tools, so record the machine after it. Record nothing if files changed
+        // meanwhile.
         (Ok(before), Ok(after)) if before.files == after.files => after.write(record),
         _ => Ok(()),
     }
 }
 
-/// Numbers that differ whenever anything differs that a suite depends on.
+/// Hashes over all inputs of a suite.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Key {
     /// Hash of the names and contents of its files.
     files: u64,
-    /// Hash of what the machine has: tools, their versions, assets.
+    /// Hash of the machine's state: tools, their versions, assets.
     machine: u64,
 }
 
@@ -126,7 +127,7 @@ impl Key {
 
     fn write(self, record: &Path) -> Result<()> {
         if let Some(folder) = record.parent() {
-            fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()))?;
+            fs::create_dir_all(folder).with_context(|| format!("cannot create {}", folder.display()))?;
         }
         fs::write(record, self.to_string()).with_context(|| format!("cannot write {}", record.display()))
     }
@@ -138,7 +139,7 @@ impl fmt::Display for Key {
     }
 }
 
-/// The versions of the programs that build and run a suite.
+/// Returns the versions of the programs that build and run a suite.
 fn tools(suite: Suite) -> Result<Vec<String>> {
     let version = |program: &str| process::output_of(Command::new(program).arg("--version"));
     let compiler = version("rustc").context("rustc does not start")?;
@@ -151,7 +152,7 @@ fn tools(suite: Suite) -> Result<Vec<String>> {
     })
 }
 
-/// Names and sizes of all files in a folder, and in those in it.
+/// Returns names and sizes of all files below a folder.
 fn sizes(folder: &Path) -> Vec<String> {
     let mut found = Vec::new();
     let mut folders = vec![folder.to_owned()];
@@ -168,15 +169,15 @@ fn sizes(folder: &Path) -> Vec<String> {
     found
 }
 
-/// A folder that a suite depends on, or a file.
+/// A file or folder that a suite depends on.
 #[derive(Debug, PartialEq, Eq)]
 struct Watched {
     path: PathBuf,
-    /// Whether its tests and benches count.
+    /// Whether its tests and benches are included.
     with_tests: bool,
 }
 
-/// Everything that a suite depends on, relative to `root`.
+/// Returns all files and folders that a suite depends on, relative to `root`.
 fn watched(root: &Path, suite: Suite) -> Result<Vec<Watched>> {
     let more: &[&str] = if suite == Suite::Page { &OF_PAGE } else { &[] };
     let plain = OF_ALL.iter().chain(more).map(|path| Watched { path: path.into(), with_tests: true });
@@ -194,8 +195,8 @@ fn is_watched(watched: &[Watched], file: &Path) -> bool {
     })
 }
 
-/// A package and all packages of the folder that it depends on. A manifest that merely mentions a package's name counts,
-/// which is more than there is to build, and never less.
+/// Returns a package and all packages of the folder that it depends on. A package counts as a dependency if
+/// the manifest mentions its name anywhere: this may return too many packages, but never too few.
 fn packages(folder: &Path, package: &str) -> Result<BTreeSet<String>> {
     let mut found = BTreeSet::new();
     let mut waiting = vec![package.to_owned()];
@@ -211,7 +212,7 @@ fn packages(folder: &Path, package: &str) -> Result<BTreeSet<String>> {
     Ok(found)
 }
 
-/// A hash over the names and contents of files. Files that git lists and the folder lacks do not count.
+/// Returns a hash over the names and contents of files. Ignores files that git lists but that do not exist.
 fn hash(root: &Path, mut files: Vec<PathBuf>) -> Result<u64> {
     files.sort_unstable();
     files.dedup();
@@ -232,7 +233,7 @@ mod tests {
 
     use super::*;
 
-    /// A folder that ends with its test.
+    /// A temporary folder that is removed when dropped.
     struct Folder(PathBuf);
 
     impl Folder {
@@ -273,7 +274,7 @@ mod tests {
         assert_ne!(hash(&["a", "b"]), usual, "a content");
     }
 
-    /// Whether a suite ran, or `None` if it failed.
+    /// Returns whether a suite ran, or `None` if it failed.
     fn ran(record: &Path, key: Key, may_skip: bool, passes: bool) -> Option<bool> {
         let ran = Cell::new(false);
         let run = || {
@@ -370,13 +371,13 @@ mod tests {
         }
     }
 
-    /// All Rust files of a folder.
+    /// Returns all Rust files of a folder.
     fn sources(folder: &Path) -> Vec<PathBuf> {
         let files = sizes(folder).into_iter().filter_map(|line| Some(PathBuf::from(line.rsplit_once(' ')?.0)));
         files.filter(|file| file.extension().is_some_and(|extension| extension == "rs")).collect()
     }
 
-    /// The paths that lead upward in a file's `include_str!`, `include_bytes!` and `#[path]`.
+    /// Returns the paths that lead upward in a file's `include_str!`, `include_bytes!` and `#[path]`.
     fn taken_in(file: &Path) -> Vec<String> {
         let text = fs::read_to_string(file).unwrap();
         let lines = text.lines().filter(|line| line.contains("include_") || line.contains("#[path"));
@@ -384,7 +385,7 @@ mod tests {
         words.filter(|word| word.starts_with("../")).map(str::to_owned).collect()
     }
 
-    /// A path without `..`.
+    /// Returns a path without `..`.
     fn normal(path: &Path) -> PathBuf {
         let mut normal = PathBuf::new();
         for part in path.components() {

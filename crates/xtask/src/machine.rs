@@ -1,5 +1,5 @@
-//! What this machine has of the things that the tasks need: probed by looking for the things themselves, not by asking
-//! the package manager, so that a driver or a tool installed in any other way counts too.
+//! Detects which tools and drivers this machine has. It looks for the files and programs themselves, not in
+//! the package manager, so that it does not matter how they were installed.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -7,22 +7,22 @@ use std::process::Command;
 
 use crate::process;
 
-/// Names that Chromium and its kin go by.
+/// Program names of Chromium and related browsers.
 pub(crate) const BROWSERS: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"];
 
 /// The target of browsers.
 pub(crate) const WEB_TARGET: &str = "wasm32-unknown-unknown";
 
-/// A thing that some task needs.
+/// A part of the machine that some task needs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Part {
-    /// `libvulkan.so.1`, through which every Vulkan driver is reached.
+    /// `libvulkan.so.1`, which loads every Vulkan driver.
     VulkanLoader,
-    /// A Vulkan driver's manifest, of whatever kind.
+    /// The manifest of any Vulkan driver.
     VulkanDriver,
-    /// The manifest of Mesa's software driver (lavapipe); the golden images are rendered on it.
+    /// The manifest of Mesa's software driver (lavapipe), which renders the golden images.
     SoftwareDriver,
-    /// `SwiftShader`'s Vulkan driver, a second software implementation, which comes with Chromium.
+    /// `SwiftShader`'s Vulkan driver, a second software implementation, included in Chromium.
     SwiftShader,
     /// One of [`WINDOW_LIBRARIES`].
     WindowLibrary(&'static str),
@@ -32,44 +32,44 @@ pub(crate) enum Part {
     Xdotool,
     /// `ImageMagick`'s screenshot tool, `import`.
     Import,
-    /// A browser of the Chromium family; the tests of the page run in it.
+    /// A browser of the Chromium family, which runs the tests of the page.
     Chromium,
     /// Node.js, which drives the browser.
     Node,
-    /// npm, which fetches what Node.js drives it with.
+    /// npm, which installs the driver library for Node.js.
     Npm,
-    /// `pkg-config`, and libudev's development files through it: what the gamepad feature is built with.
+    /// `pkg-config` and libudev's development files, for building the gamepad feature.
     Libudev,
 }
 
-/// What was found.
+/// The detected parts of this machine.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Machine {
-    /// What is there.
+    /// Available parts.
     pub(crate) parts: BTreeSet<Part>,
-    /// Where a window could be opened.
+    /// Display that could show a window.
     pub(crate) display: Display,
 }
 
-/// Where a window could be opened.
+/// The display that could show a window.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Display {
-    /// Nowhere.
+    /// No display.
     #[default]
     None,
-    /// On the X server that `DISPLAY` names.
+    /// The X server that `DISPLAY` names.
     X11,
-    /// On the compositor that `WAYLAND_DISPLAY` names.
+    /// The compositor that `WAYLAND_DISPLAY` names.
     Wayland,
-    /// On the desktop of a system that always has one.
+    /// The desktop of a system that always has one.
     Desktop,
 }
 
-/// What the tests of the page need, with the Debian package of each.
+/// Tools for the tests of the page, with their Debian packages.
 pub(crate) const PAGE_TOOLS: [(Part, &str); 3] =
     [(Part::Chromium, "chromium"), (Part::Node, "nodejs"), (Part::Npm, "npm")];
 
-/// The shared libraries that winit opens at run time for a window on X11, with the Debian package of each.
+/// Shared libraries that winit loads at run time for a window on X11, with their Debian packages.
 pub(crate) const WINDOW_LIBRARIES: [(&str, &str); 5] = [
     ("libX11.so.6", "libx11-6"),
     ("libX11-xcb.so.1", "libx11-xcb1"),
@@ -79,7 +79,7 @@ pub(crate) const WINDOW_LIBRARIES: [(&str, &str); 5] = [
 ];
 
 impl Machine {
-    /// Looks at this machine.
+    /// Detects the parts of this machine.
     pub(crate) fn probe() -> Self {
         let display = display_from(
             std::env::consts::OS,
@@ -108,27 +108,28 @@ impl Machine {
         Self { parts: all_parts().filter(is_there).collect(), display }
     }
 
-    /// A machine that lacks nothing: what systems other than Linux, with drivers and windows of their own, count as.
+    /// Returns a machine with all parts. Systems other than Linux count as complete: they have their own
+    /// drivers and windows.
     pub(crate) fn complete(display: Display) -> Self {
         Self { parts: all_parts().collect(), display }
     }
 
-    /// Whether `part` is there.
+    /// Returns whether `part` is available.
     pub(crate) fn has(&self, part: Part) -> bool {
         self.parts.contains(&part)
     }
 
-    /// Whether anything can be rendered at all.
+    /// Returns whether anything can be rendered.
     pub(crate) fn can_render(&self) -> bool {
         self.has(Part::VulkanLoader) && self.has(Part::VulkanDriver)
     }
 
-    /// Whether the tests of the page have their tools.
+    /// Returns whether the tools for the tests of the page are available.
     pub(crate) fn can_test_page(&self) -> bool {
         self.can_render() && PAGE_TOOLS.iter().all(|&(part, _)| self.has(part))
     }
 
-    /// Whether the window test has its tools.
+    /// Returns whether the tools for the window test are available.
     pub(crate) fn can_test_window(&self) -> bool {
         let mut window_tools = [Part::Xvfb, Part::Xdotool, Part::Import].into_iter().chain(window_libraries());
         self.can_render() && window_tools.all(|part| self.has(part))
@@ -157,7 +158,7 @@ fn all_parts() -> impl Iterator<Item = Part> {
     .chain(window_libraries())
 }
 
-/// Where a window could be opened, from the system's name and the two environment variables (empty counts as unset).
+/// Returns the display, given the system's name and the two environment variables (empty counts as unset).
 fn display_from(os: &str, wayland: Option<&str>, x11: Option<&str>) -> Display {
     let set = |value: Option<&str>| value.is_some_and(|text| !text.is_empty());
     if os == "macos" || os == "windows" {
@@ -195,19 +196,20 @@ impl LoaderCache {
     }
 }
 
-/// Whether the listing of `ldconfig -p` names `soname`, as the whole first word of a line.
+/// Returns whether the listing of `ldconfig -p` has `soname` as the whole first word of a line.
 fn listed(listing: &str, soname: &str) -> bool {
     listing.lines().any(|line| line.split_whitespace().next() == Some(soname))
 }
 
-/// The file names of the Vulkan drivers' manifests that the loader would read.
+/// Returns the file names of the Vulkan driver manifests that the loader would read.
 fn vulkan_manifests() -> Vec<String> {
     for variable in ["VK_DRIVER_FILES", "VK_ICD_FILENAMES"] {
         if let Some(files) = std::env::var_os(variable).filter(|value| !value.is_empty()) {
             return std::env::split_paths(&files).filter(|file| file.exists()).filter_map(|f| name_of(&f)).collect();
         }
     }
-    // Khronos' "Vulkan-Loader: driver interface", section "Driver discovery on Linux": the system's folders of it.
+    // The system folders from Khronos' "Vulkan-Loader: driver interface", section "Driver discovery on
+    // Linux".
     ["/etc/vulkan/icd.d", "/usr/local/etc/vulkan/icd.d", "/usr/local/share/vulkan/icd.d", "/usr/share/vulkan/icd.d"]
         .iter()
         .filter_map(|folder| std::fs::read_dir(folder).ok())
@@ -217,7 +219,7 @@ fn vulkan_manifests() -> Vec<String> {
         .collect()
 }
 
-/// The manifest of `SwiftShader`'s driver in the folder of Debian's Chromium.
+/// Returns the manifest of `SwiftShader`'s driver in the folder of Debian's Chromium.
 pub(crate) fn swiftshader_manifest() -> Option<PathBuf> {
     let folders = ["/usr/lib/chromium", "/usr/lib/chromium-browser", "/opt/google/chrome"];
     folders.iter().map(|folder| Path::new(folder).join("vk_swiftshader_icd.json")).find(|file| file.is_file())
@@ -227,7 +229,7 @@ fn name_of(path: &Path) -> Option<String> {
     path.file_name().map(|name| name.to_string_lossy().into_owned())
 }
 
-/// Whether a driver manifest's file name is that of Mesa's lavapipe, "lvp" for short.
+/// Returns whether a driver manifest's file name is Mesa's lavapipe ("lvp" for short).
 fn is_software_driver(manifest: &str) -> bool {
     manifest.starts_with("lvp_icd")
 }

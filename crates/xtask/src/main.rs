@@ -1,6 +1,6 @@
-//! Development tasks of the workspace: `cargo xtask run` and `cargo xtask test` are the README's two commands, the
-//! others are what a contributor and the continuous integration call. Each task first looks at what the machine has
-//! and, on Debian and systems derived from it, installs what is missing.
+//! Development tasks of the workspace. `cargo xtask run` and `cargo xtask test` are the README's two
+//! commands. The others are for contributors and the continuous integration. Each task first checks the
+//! machine and, on Debian and its derivatives, installs missing packages.
 
 #![cfg_attr(not(feature = "tools"), allow(dead_code, reason = "other commands share it"))]
 
@@ -10,6 +10,7 @@ mod bundle;
 mod ci;
 #[cfg(test)]
 mod docs;
+mod figures;
 #[cfg(feature = "tools")]
 mod gallery;
 mod generate;
@@ -59,39 +60,42 @@ enum Task {
         all: bool,
         /// Parts of the paths of the tests to run; without doc tests, page and Bevy.
         names: Vec<String>,
-        /// Draws on this machine's GPU instead of the software adapter, without golden pictures and the window. The variable
-        /// `SHADOWFIT_ADAPTER` names any other adapter.
+        /// Draws on this machine's GPU instead of the software adapter, without golden pictures and the
+        /// window. The variable `SHADOWFIT_ADAPTER` names any other adapter.
         #[arg(long)]
         gpu: bool,
     },
-    /// Write the tests and the examples as programs, with a runner that needs no Rust, for machines without a toolchain.
+    /// Write the tests and the examples as programs, with a runner, for machines without a Rust toolchain.
     Bundle {
         /// Folder of the bundle, new or empty.
         folder: std::path::PathBuf,
-        /// Builds OpenGL in, too: run with `WGPU_BACKEND=gl`.
+        /// Also builds OpenGL in: run with `WGPU_BACKEND=gl`.
         #[arg(long)]
         gles: bool,
     },
     /// Lint, document and test the package for Bevy.
     Bevy,
-    /// Write the parts of the documents that come from code: examples, and the drawings of docs/MATHS.md.
+    /// Write the generated parts of the documents: examples, and the drawings of docs/MATHS.md.
     Generate,
-    /// Run every check that comes before the tests: format, lints, docs, MSRV, `no_std`, dependencies, examples.
+    /// Run every check before the tests: format, lints, docs, MSRV, `no_std`, dependencies, examples.
     Ci,
     /// Render the pictures of the README and the docs again.
     Gallery {
-        /// What alone is rendered: samples by their names, for example `xna-shadow-mapping`, or `film` for the film of
-        /// the README.
+        /// Render only these: samples by their names, for example `xna-shadow-mapping`, or `film` for the
+        /// film of the README.
         only: Vec<String>,
     },
-    /// Measure with `shadowfit-bench` and write the tables into docs/BENCHMARKS.md: of the core crate, with `--gpu` of
-    /// shadows on a GPU, or with `--growth` of costs by the size of the world.
+    /// Measure with `shadowfit-bench` and write the tables to docs/figures: of the core crate, with
+    /// `--gpu` of shadows on a GPU, or with `--growth` of costs by the size of the world.
     Bench {
         /// Arguments of the program's command `core`, `gpu` or `growth`: part of a bench's name, glTF files, `--quick`.
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         args: Vec<String>,
     },
-    /// Build the viewer as a web page, serve it on this machine and open it in the browser where there is one.
+    /// Measure the figures of README and BENCHMARKS again, on generated scenes: in about ten minutes with a software
+    /// driver. The results are in out/figures.
+    Figures(figures::Figures),
+    /// Build the viewer as a web page, serve it on this machine and open it in the browser, if there is one.
     Web {
         /// Writes the page into this folder instead, for any host of static files.
         #[arg(long, value_name = "DIR")]
@@ -102,11 +106,11 @@ enum Task {
         /// Tests the page in headless Chromium, on software WebGPU and WebGL2.
         #[arg(long, conflicts_with = "build")]
         test: bool,
-        /// The same with ten minutes of random actions instead of a fraction of one.
+        /// Tests with ten minutes of random actions instead of a fraction of one.
         #[arg(long, requires = "test")]
         long: bool,
     },
-    /// Rewrite the golden images of the tests from what is rendered now; look at the diff before committing it.
+    /// Rewrite the golden images of the tests; look at the diff before committing it.
     Golden,
 }
 
@@ -129,6 +133,7 @@ fn main() -> ExitCode {
         #[cfg(feature = "tools")]
         Task::Gallery { only } => gallery::gallery(&only),
         Task::Bench { args } => bench(&args),
+        Task::Figures(options) => figures::figures(&options),
         #[cfg(feature = "tools")]
         Task::Web { test: true, long, .. } => green::unless_unchanged(green::Suite::Page, || web::test(long)),
         #[cfg(feature = "tools")]
@@ -147,7 +152,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// Runs `shadowfit-bench`, whose tables go into docs/BENCHMARKS.md.
+/// Runs `shadowfit-bench`, which writes its tables to docs/figures.
 fn bench(args: &[String]) -> anyhow::Result<()> {
     let (command, args) = match args.split_first() {
         Some((first, args)) if first == "--gpu" => ("gpu", args),
@@ -158,7 +163,7 @@ fn bench(args: &[String]) -> anyhow::Result<()> {
     process::run(process::cargo("run").args(program).args(args))
 }
 
-/// Prints why the command line is refused, with the tiers where it named none of them, and ends with clap's exit code: 2,
+/// Prints the error in the command line and, for the tests, the list of tiers. Ends with clap's exit code: 2,
 /// or 0 for help.
 fn refuse(error: &clap::Error) -> ! {
     let _ = error.print();
@@ -182,7 +187,7 @@ mod tests {
 
     #[test]
     fn every_task_but_the_viewer_has_help_of_its_own() {
-        for task in ["test", "bundle", "bevy", "generate", "ci", "gallery", "bench", "web", "golden"] {
+        for task in ["test", "bundle", "bevy", "generate", "ci", "gallery", "bench", "figures", "web", "golden"] {
             let asked = Cli::try_parse_from(["xtask", task, "--help"]).err().map(|error| error.kind());
             assert_eq!(asked, Some(clap::error::ErrorKind::DisplayHelp), "{task}");
         }

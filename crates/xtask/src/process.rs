@@ -1,5 +1,5 @@
-//! Starting other programs: one place that runs them in the right folder, shows what is run, and turns a failure into
-//! an error that names the command and keeps its exit code.
+//! Starts other programs: runs them in the right folder, prints the command, and turns a failure into an
+//! error that names the command and keeps its exit code.
 
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -8,21 +8,21 @@ use std::time::Duration;
 
 use anyhow::{Context, Result};
 
-/// The environment variable that lets lints and documentation be checked where tests are compiled, as `.ci/run` wants it:
-/// `cargo clippy` and `cargo doc` each check all dependencies, which tests then compile once more.
+/// The environment variable that moves lints and documentation into the builds of the tests. `.ci/run` sets
+/// it, since `cargo clippy` and `cargo doc` each check all dependencies again.
 const LINT_TESTS: &str = "SHADOWFIT_LINT_TESTS";
 
 /// Cargo's environment variable for a program that compiles the packages of the workspace.
 const WRAPPER: &str = "RUSTC_WORKSPACE_WRAPPER";
 
-/// The exit code after an interrupt.
+/// Exit code after an interrupt.
 const INTERRUPTED: i32 = 130;
 
 /// A program that ended with a status other than 0.
 #[derive(Debug)]
 struct Failed {
     command: String,
-    /// `None` when a signal ended it.
+    /// Exit code, or `None` if a signal ended the program.
     code: Option<i32>,
 }
 
@@ -37,7 +37,8 @@ impl fmt::Display for Failed {
 
 impl std::error::Error for Failed {}
 
-/// The exit code to end with for `error`: that of the program that failed (the viewer's 2 means bad input), else 1.
+/// Returns the exit code for `error`: the code of the program that failed (the viewer's 2 means bad input),
+/// else 1.
 pub(crate) fn exit_code_of(error: &anyhow::Error) -> u8 {
     error
         .downcast_ref::<Failed>()
@@ -47,22 +48,24 @@ pub(crate) fn exit_code_of(error: &anyhow::Error) -> u8 {
         .unwrap_or(1)
 }
 
-/// The workspace's folder.
+/// Returns the workspace's folder.
 pub(crate) fn root() -> PathBuf {
-    // Cargo sets the variable for the programs it runs; the compiled-in value serves a binary started by hand.
+    // Cargo sets the variable for programs that it runs. The compiled-in value is for a binary started by
+    // hand.
     let manifest_dir =
         std::env::var_os("CARGO_MANIFEST_DIR").map_or_else(|| PathBuf::from(env!("CARGO_MANIFEST_DIR")), PathBuf::from);
     manifest_dir.ancestors().nth(2).map_or(manifest_dir.clone(), PathBuf::from)
 }
 
-/// A cargo command with its sub-command, in the workspace's folder.
+/// Returns a cargo command with its sub-command, run in the workspace's folder.
 pub(crate) fn cargo(subcommand: &str) -> Command {
     let mut command = cargo_here(subcommand);
     command.current_dir(root());
     command
 }
 
-/// A cargo command with its sub-command, in the caller's folder, so that relative paths on the command line hold.
+/// Returns a cargo command with its sub-command, run in the caller's folder, so that relative paths stay
+/// valid.
 pub(crate) fn cargo_here(subcommand: &str) -> Command {
     let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     command.arg(subcommand);
@@ -72,7 +75,7 @@ pub(crate) fn cargo_here(subcommand: &str) -> Command {
     command
 }
 
-/// This program with its feature `tools`, without arguments yet.
+/// Returns a command that runs this program with its feature `tools`, without arguments yet.
 pub(crate) fn with_tools() -> Command {
     let mut command = cargo_here("run");
     command.arg("--quiet").arg("--manifest-path").arg(root().join("Cargo.toml"));
@@ -80,10 +83,10 @@ pub(crate) fn with_tools() -> Command {
     command
 }
 
-/// Shows and runs `command` with this process's own input and output.
+/// Prints and runs `command` with this process's own input and output.
 ///
 /// # Errors
-/// When the program cannot be started, or ends with a status other than 0.
+/// If the program cannot be started, or ends with a status other than 0.
 pub(crate) fn run(command: &mut Command) -> Result<()> {
     let shown = shown(command);
     eprintln!("+ {shown}");
@@ -94,10 +97,10 @@ pub(crate) fn run(command: &mut Command) -> Result<()> {
     Err(Failed { command: shown, code: status.code() }.into())
 }
 
-/// Runs `command` and returns its standard output, without the white space at its ends. Its errors are shown.
+/// Runs `command` and returns its trimmed standard output. Its standard error is shown.
 ///
 /// # Errors
-/// When the program cannot be started, or ends with a status other than 0.
+/// If the program cannot be started, or ends with a status other than 0.
 pub(crate) fn printed_by(command: &mut Command) -> Result<String> {
     let shown = shown(command);
     let output = command.stderr(Stdio::inherit()).output().with_context(|| format!("cannot start `{shown}`"))?;
@@ -107,8 +110,8 @@ pub(crate) fn printed_by(command: &mut Command) -> Result<String> {
     Err(Failed { command: shown, code: output.status.code() }.into())
 }
 
-/// From now on, an interrupt or a request to end also ends every program that this one has started, and those that they
-/// have started: servers, displays and browsers would outlive a test runner that ends at once.
+/// Makes an interrupt or termination also end all descendants of this process. Otherwise servers, displays
+/// and browsers would outlive the test runner.
 pub(crate) fn end_children_on_interrupt() {
     let handled = ctrlc::set_handler(|| {
         let children = descendants(std::process::id());
@@ -124,7 +127,7 @@ pub(crate) fn end_children_on_interrupt() {
     }
 }
 
-/// Ids of the processes that a process has started, and of those that they have started.
+/// Returns the process ids of all descendants of a process.
 fn descendants(ancestor: u32) -> Vec<u32> {
     let entries = std::fs::read_dir("/proc").into_iter().flatten().flatten();
     let processes: Vec<(u32, u32)> = entries
@@ -142,12 +145,12 @@ fn descendants(ancestor: u32) -> Vec<u32> {
     found.split_off(1)
 }
 
-/// The parent's id from the text of `/proc/ID/stat`, where it is the second word after the name in parentheses.
+/// Returns the parent's id from the text of `/proc/ID/stat`: the second word after the name in parentheses.
 fn parent(stat: &str) -> Option<u32> {
     stat.rsplit_once(')')?.1.split_whitespace().nth(1)?.parse().ok()
 }
 
-/// Whether `command` starts and ends with status 0; its output is not shown.
+/// Returns whether `command` starts and ends with status 0. Its output is not shown.
 pub(crate) fn succeeds(command: &mut Command) -> bool {
     command
         .stdin(Stdio::null())
@@ -157,45 +160,45 @@ pub(crate) fn succeeds(command: &mut Command) -> bool {
         .is_ok_and(|status| status.success())
 }
 
-/// What `command` prints to its standard output, `None` when it cannot be started or fails.
+/// Returns the standard output of `command`, or `None` if it cannot be started or fails.
 pub(crate) fn output_of(command: &mut Command) -> Option<String> {
     let output = command.stdin(Stdio::null()).stderr(Stdio::null()).output().ok()?;
     output.status.success().then(|| String::from_utf8_lossy(&output.stdout).into_owned())
 }
 
-/// Whether Rust can build for a target, once rustup was asked to bring it.
+/// Installs a target with rustup. Returns whether Rust can build for it.
 pub(crate) fn has_target(target: &str) -> bool {
     succeeds(Command::new("rustup").args(["target", "add", target]))
 }
 
-/// Where cargo puts what it builds.
+/// Returns cargo's target folder.
 pub(crate) fn target_folder() -> PathBuf {
     std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), PathBuf::from)
 }
 
-/// Whether lints and documentation are checked where tests are compiled.
+/// Returns whether lints and documentation are checked while tests are built.
 pub(crate) fn lints_tests() -> bool {
     std::env::var(LINT_TESTS).is_ok_and(|value| !value.is_empty() && value != "0")
 }
 
-/// Lets rustc compile the packages of the workspace even if clippy compiles them for other commands.
+/// Makes rustc compile the packages of the workspace, even if clippy compiles them for other commands.
 pub(crate) fn without_lints(command: &mut Command) -> &mut Command {
     command.env_remove(WRAPPER)
 }
 
-/// Lets clippy compile the packages of the workspace in place of the compiler, with warnings as errors, as `cargo clippy` does
-/// it: lints then need no second build of all dependencies.
+/// Makes clippy compile the packages of the workspace in place of rustc, with warnings as errors, like `cargo
+/// clippy`. Lints then need no second build of all dependencies.
 pub(crate) fn with_lints(command: &mut Command) -> &mut Command {
     command.env(WRAPPER, "clippy-driver").env("CLIPPY_ARGS", "-D__CLIPPY_HACKERY__warnings")
 }
 
-/// Sets up Mesa's software driver for tests. Compiling a shader takes it longer than drawing a small picture with it, so
-/// shaders are compiled without optimisation, and kept beside the compiled Rust for the next run.
+/// Configures Mesa's software driver for tests. Compiling a shader takes longer than drawing a small picture
+/// with it, so shaders are compiled without optimisation and cached in the target folder.
 pub(crate) fn with_driver_for_tests(command: &mut Command) -> &mut Command {
     with_runtime_folder(command).env("GALLIVM_PERF", "nopt").env("MESA_SHADER_CACHE_DIR", target_folder().join("mesa"))
 }
 
-/// Names a folder for running programs where no login session has: Mesa complains without one, and needs it for nothing here.
+/// Sets a runtime folder outside login sessions. Mesa warns without one, but does not use it here.
 pub(crate) fn with_runtime_folder(command: &mut Command) -> &mut Command {
     if std::env::var_os("XDG_RUNTIME_DIR").is_none() {
         command.env("XDG_RUNTIME_DIR", std::env::temp_dir());
@@ -203,7 +206,7 @@ pub(crate) fn with_runtime_folder(command: &mut Command) -> &mut Command {
     command
 }
 
-/// The command as a person would type it: the program's name without its folder, then the arguments.
+/// Returns the command as typed in a shell: the program's name without its folder, then the arguments.
 fn shown(command: &Command) -> String {
     let program = Path::new(command.get_program());
     let name = program.file_name().unwrap_or(program.as_os_str()).to_string_lossy();
@@ -211,7 +214,7 @@ fn shown(command: &Command) -> String {
     std::iter::once(name.into_owned()).chain(words).collect::<Vec<_>>().join(" ")
 }
 
-/// `word` as a shell takes it literally.
+/// Quotes `word` for a shell if necessary.
 fn quoted(word: &str) -> String {
     if word.is_empty() || word.contains(|c: char| c.is_whitespace() || "()|'\"^$*".contains(c)) {
         return format!("'{}'", word.replace('\'', r"'\''"));

@@ -1,4 +1,4 @@
-//! `cargo xtask run`: the viewer in a window, or, where there is no display, its set of pictures.
+//! `cargo xtask run`: the viewer in a window or, without a display, its set of pictures.
 
 use std::path::Path;
 use std::process::Command;
@@ -9,13 +9,13 @@ use crate::machine::{Display, Machine};
 use crate::process;
 use crate::setup::{self, Purpose};
 
-/// Where the pictures go when there is no display, relative to the workspace's folder.
+/// Folder of the pictures without a display, relative to the workspace's folder.
 const PICTURES: &str = "out/pictures";
 
 /// Prepares the machine, builds the viewer and starts it with `args`.
 ///
 /// # Errors
-/// When the viewer cannot be built, or ends with an error; its exit code is kept.
+/// If the viewer cannot be built, or ends with an error. Its exit code is kept.
 pub(crate) fn run(args: &[String]) -> Result<()> {
     let machine = setup::prepare(Purpose::Run)?;
     let pictures = process::root().join(PICTURES);
@@ -29,19 +29,19 @@ pub(crate) fn run(args: &[String]) -> Result<()> {
     Ok(())
 }
 
-/// The command that builds and starts the viewer, ready for the viewer's own arguments. It is optimised: on a software
-/// driver the rays and the scene's set-up share the CPU with the picture.
+/// Returns the command that builds and starts the viewer, without the viewer's own arguments. The build is
+/// optimised: with a software driver, rays and scene preparation share the CPU with rendering.
 pub(crate) fn viewer(machine: &Machine) -> Command {
     let mut command = process::cargo_here("run");
     command.arg("--manifest-path").arg(process::root().join("Cargo.toml"));
-    // The viewer's package alone: the workspace's examples and tests need more crates than it does.
+    // Only the viewer's package: the workspace's examples and tests need more crates.
     command.args(["--release", "--package", "shadowfit-viewer", "--example", "viewer"]);
     command.args(setup::viewer_features(machine)).arg("--");
     process::with_runtime_folder(&mut command);
     command
 }
 
-/// Says where the pictures in `folder` are.
+/// Prints the folder of the pictures and their number.
 pub(crate) fn say_where(folder: &Path) {
     let count = std::fs::read_dir(folder).map_or(0, |entries| {
         entries.flatten().filter(|entry| entry.path().extension().is_some_and(|extension| extension == "png")).count()
@@ -49,7 +49,7 @@ pub(crate) fn say_where(folder: &Path) {
     println!("{count} pictures in {}", folder.display());
 }
 
-/// Whether the viewer's arguments already ask for something that opens no window.
+/// Returns whether the viewer's arguments already select a mode without a window.
 fn needs_no_display(args: &[String]) -> bool {
     args.iter().any(|arg| {
         matches!(arg.as_str(), "--headless" | "--check" | "--parameters" | "--help" | "-h" | "--version" | "-V")

@@ -1,5 +1,5 @@
-//! Documentation that is written where the examples in it are tested: `cargo doc` would check all dependencies, which the
-//! tests have compiled already. This program takes the place of rustdoc for that.
+//! Writes the documentation while its examples are tested: `cargo doc` would check all dependencies again,
+//! which the tests have already compiled. For this, the program acts as rustdoc.
 
 use std::ffi::{OsStr, OsString};
 use std::process::{Command, ExitCode};
@@ -8,20 +8,20 @@ use anyhow::Result;
 
 use crate::process;
 
-/// The environment variable that makes this program rustdoc.
+/// The environment variable that makes this program act as rustdoc.
 const AS_RUSTDOC: &str = "SHADOWFIT_AS_RUSTDOC";
 
-/// Lets a cargo command that tests documentation write it, too, with warnings as errors.
+/// Makes a cargo command for doc tests also write the documentation, with warnings as errors.
 ///
 /// # Errors
-/// When the path of this program is unknown.
+/// If the path of this program is unknown.
 pub(crate) fn write_documentation(tests: &mut Command) -> Result<()> {
     tests.env("RUSTDOC", std::env::current_exe()?).env(AS_RUSTDOC, "1");
     Ok(())
 }
 
-/// Acts as rustdoc if this program was started in its place: where cargo tests the examples in the documentation, writes
-/// the documentation first, and takes its warnings for errors.
+/// Acts as rustdoc if cargo started this program in its place. When cargo tests the examples in the
+/// documentation, it first writes the documentation, with warnings as errors.
 pub(crate) fn as_rustdoc() -> Option<ExitCode> {
     std::env::var_os(AS_RUSTDOC)?;
     let arguments: Vec<OsString> = std::env::args_os().skip(1).collect();
@@ -41,7 +41,8 @@ pub(crate) fn as_rustdoc() -> Option<ExitCode> {
     Some(ExitCode::SUCCESS)
 }
 
-/// Returns the arguments that write the documentation, given the arguments that test it. Returns `None` for all others.
+/// Returns the arguments for writing the documentation, made from those for testing it, or `None` for other
+/// arguments.
 fn documenting(arguments: &[OsString]) -> Option<Vec<OsString>> {
     let is_test = |argument: &&OsString| argument.as_os_str() == OsStr::new("--test");
     arguments.iter().find(is_test)?;

@@ -1,5 +1,5 @@
-//! Installs what a task needs and the machine lacks: at once on Debian and systems derived from it, as root; elsewhere
-//! it says what is missing and goes on, because what is missing may turn out not to matter.
+//! Installs missing packages for a task. This works for root on Debian and its derivatives. Elsewhere it
+//! prints the missing packages and continues, since the task may work without them.
 
 use std::process::Command;
 
@@ -8,35 +8,37 @@ use anyhow::{Result, bail};
 use crate::machine::{Display, Machine, PAGE_TOOLS, Part, WINDOW_LIBRARIES};
 use crate::process;
 
-/// What the machine is made ready for.
+/// The purpose of preparing the machine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Purpose {
-    /// Running the viewer: some Vulkan driver, gamepads, and a window where there is a display.
+    /// Running the viewer: any Vulkan driver, gamepads, and a window if there is a display.
     Run,
+    /// Measuring also the fits of npm packages: any Vulkan driver, Node.js and npm.
+    Peers,
     /// Rendering pictures that must be the same everywhere: the software driver.
     Pictures,
-    /// Testing the page: the software driver, and a browser with what drives it.
+    /// Testing the page: the software driver, and a browser with its driver tools.
     Page,
     /// Running the tests: the software driver of the golden images, and the tools of the window test.
     Test,
-    /// Drawing on a second software driver, too.
+    /// Also drawing on a second software driver.
     SecondDriver,
-    /// Running all tests: those of the page, too.
+    /// Running all tests, including the tests of the page.
     TestAll,
 }
 
-/// The environment variable with which an automatic run says that nothing may be skipped for want of a GPU.
+/// The environment variable of automatic runs that forbids skipping tests because a GPU is missing.
 pub(crate) const REQUIRE_GPU: &str = "SHADOWFIT_REQUIRE_GPU";
 
-/// Whether [`REQUIRE_GPU`] is set.
+/// Returns whether [`REQUIRE_GPU`] is set.
 pub(crate) fn gpu_is_required() -> bool {
     std::env::var(REQUIRE_GPU).is_ok_and(|value| !value.is_empty() && value != "0")
 }
 
-/// Makes the machine ready for `purpose` as far as it can, and says what is there afterwards.
+/// Installs missing packages for `purpose` if possible. Returns the parts that are available afterwards.
 ///
 /// # Errors
-/// Only where [`REQUIRE_GPU`] is set and something is still missing: there a gap must not pass unseen.
+/// If [`REQUIRE_GPU`] is set and a part is still missing.
 pub(crate) fn prepare(purpose: Purpose) -> Result<Machine> {
     let machine = Machine::probe();
     let packages = missing_packages(purpose, &machine);
@@ -57,7 +59,7 @@ pub(crate) fn prepare(purpose: Purpose) -> Result<Machine> {
     Ok(machine)
 }
 
-/// The features that the workspace can be built with here. Every task uses these, so that all share one build.
+/// Returns the workspace's features that can be built here. All tasks use them, so that they share one build.
 pub(crate) fn features(machine: &Machine) -> &'static [&'static str] {
     if viewer_features(machine).is_empty() {
         return &["--features", "xtask/tools"];
@@ -65,7 +67,7 @@ pub(crate) fn features(machine: &Machine) -> &'static [&'static str] {
     &["--features", "gamepad,xtask/tools"]
 }
 
-/// Those of the viewer alone.
+/// Returns the viewer's features that can be built here.
 pub(crate) fn viewer_features(machine: &Machine) -> &'static [&'static str] {
     if machine.has(Part::Libudev) {
         return &["--features", "gamepad"];
@@ -74,11 +76,12 @@ pub(crate) fn viewer_features(machine: &Machine) -> &'static [&'static str] {
     &[]
 }
 
-/// The Debian packages with what `purpose` needs and `machine` lacks, in a fixed order.
+/// Returns the Debian packages that `purpose` needs and `machine` lacks, in a fixed order.
 fn missing_packages(purpose: Purpose, machine: &Machine) -> Vec<&'static str> {
     let testing = matches!(purpose, Purpose::Test | Purpose::TestAll);
-    // A machine with a driver of its own keeps it for flying; the golden images come from the software driver alone.
-    let driver = if purpose == Purpose::Run { Part::VulkanDriver } else { Part::SoftwareDriver };
+    // To run the viewer, any driver will do. The golden images need the software driver.
+    let driver =
+        if matches!(purpose, Purpose::Run | Purpose::Peers) { Part::VulkanDriver } else { Part::SoftwareDriver };
     let mut needs = vec![(Part::VulkanLoader, "libvulkan1"), (driver, "mesa-vulkan-drivers")];
     if testing || machine.display == Display::X11 {
         needs.extend(WINDOW_LIBRARIES.map(|(library, package)| (Part::WindowLibrary(library), package)));
@@ -88,6 +91,9 @@ fn missing_packages(purpose: Purpose, machine: &Machine) -> Vec<&'static str> {
     }
     if matches!(purpose, Purpose::TestAll | Purpose::Page) {
         needs.extend(PAGE_TOOLS);
+    }
+    if purpose == Purpose::Peers {
+        needs.extend(PAGE_TOOLS.iter().filter(|(part, _)| *part != Part::Chromium));
     }
     if purpose == Purpose::SecondDriver {
         needs.push((Part::SwiftShader, "chromium"));
@@ -100,11 +106,11 @@ fn missing_packages(purpose: Purpose, machine: &Machine) -> Vec<&'static str> {
 enum Remedy {
     /// Install the packages now.
     Install,
-    /// Say this.
+    /// Print this text.
     Say(String),
 }
 
-/// What to do about missing `packages`, named as Debian names them.
+/// Returns the remedy for missing `packages`, which have their Debian names.
 fn remedy(debian_like: bool, is_root: bool, packages: &[&str]) -> Remedy {
     let names = packages.join(" ");
     match (debian_like, is_root) {
@@ -112,11 +118,11 @@ fn remedy(debian_like: bool, is_root: bool, packages: &[&str]) -> Remedy {
         (true, false) => {
             Remedy::Say(format!("to install what is missing: sudo apt-get install --no-install-recommends {names}"))
         }
-        (false, _) => Remedy::Say(format!("missing here, as Debian names it (other systems differ): {names}")),
+        (false, _) => Remedy::Say(format!("missing here, by its Debian name (other systems differ): {names}")),
     }
 }
 
-/// Installs `packages`; a failure is shown and not final, since the task may do without.
+/// Installs `packages`. Prints failures and continues, since the task may work without them.
 fn install(packages: &[&str]) {
     let apt = |arguments: &[&str]| {
         process::run(
@@ -125,7 +131,7 @@ fn install(packages: &[&str]) {
     };
     let mut arguments = vec!["install", "--no-install-recommends"];
     arguments.extend_from_slice(packages);
-    // A list of packages that is old may still do where the network is away, so the second step is tried regardless.
+    // An old package list may be sufficient without network access, so try the second step regardless.
     for result in [apt(&["update"]), apt(&arguments)] {
         if let Err(error) = result {
             eprintln!("{error:#}; going on without");
@@ -133,7 +139,7 @@ fn install(packages: &[&str]) {
     }
 }
 
-/// Whether the text of `/etc/os-release` is that of Debian or of a system derived from it.
+/// Returns whether the text of `/etc/os-release` belongs to Debian or a derivative.
 fn is_debian_like(os_release: &str) -> bool {
     os_release
         .lines()
@@ -143,8 +149,8 @@ fn is_debian_like(os_release: &str) -> bool {
         .any(|id| matches!(id, "debian" | "ubuntu"))
 }
 
-/// The effective user id from the text of `/proc/self/status`, where the line holds real, effective, saved and file
-/// system id in this order.
+/// Returns the effective user id from the text of `/proc/self/status`, whose line holds real, effective,
+/// saved and file system id in this order.
 fn effective_uid(status: &str) -> Option<u32> {
     let line = status.lines().find_map(|line| line.strip_prefix("Uid:"))?;
     line.split_whitespace().nth(1)?.parse().ok()

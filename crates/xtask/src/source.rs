@@ -1,4 +1,4 @@
-//! Source files as text: reads them, and leaves out comments and tests.
+//! Source files as text: reads them and removes comments and tests.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -7,7 +7,7 @@ use anyhow::{Context, Result};
 
 use crate::process;
 
-/// Reads the Rust and WGSL files below a folder, by their names relative to the workspace's folder.
+/// Reads the Rust and WGSL files below a folder. Keys are paths relative to the workspace's folder.
 pub(crate) fn texts(folder: &str) -> Result<BTreeMap<String, String>> {
     let mut texts = BTreeMap::new();
     for entry in fs::read_dir(process::root().join(folder)).with_context(|| format!("cannot read {folder}"))? {
@@ -28,7 +28,7 @@ pub(crate) fn is_part_of_word(character: char) -> bool {
     character.is_alphanumeric() || character == '_'
 }
 
-/// Returns the text without comments. A string or a character becomes the word `S`, and line ends stay.
+/// Returns the text without comments. Replaces strings and characters by the word `S`, and keeps line ends.
 pub(crate) fn without_comments(text: &str) -> String {
     let mut code = String::with_capacity(text.len());
     let mut rest = text;
@@ -47,7 +47,7 @@ pub(crate) fn without_comments(text: &str) -> String {
     code
 }
 
-/// Returns the length of the comment that a text begins with.
+/// Returns the length of the comment at the start of a text.
 fn comment_length(text: &str) -> Option<usize> {
     if text.starts_with("//") {
         return Some(text.find('\n').unwrap_or(text.len()));
@@ -63,7 +63,7 @@ fn comment_length(text: &str) -> Option<usize> {
     Some(text.len())
 }
 
-/// Returns the length of the string or character that a text begins with.
+/// Returns the length of the string or character at the start of a text.
 fn literal_length(text: &str) -> Option<usize> {
     let after =
         |pattern: &str, from: usize| text[from..].find(pattern).map_or(text.len(), |at| from + at + pattern.len());
@@ -90,7 +90,7 @@ fn literal_length(text: &str) -> Option<usize> {
     }
 }
 
-/// Returns the text, which has no comments, without the items that are compiled for tests alone. Line ends stay.
+/// Removes test-only items from text without comments. Keeps line ends.
 pub(crate) fn without_tests(code: &str) -> String {
     let mut product = String::with_capacity(code.len());
     let mut at = 0;
@@ -104,13 +104,13 @@ pub(crate) fn without_tests(code: &str) -> String {
     product + &code[at..]
 }
 
-/// Returns where the items begin and end that are compiled for tests alone, attributes included.
+/// Returns start and end of the test-only items, including attributes.
 pub(crate) fn test_items(code: &str) -> Vec<(usize, usize)> {
     let is_test = |at: usize| code[at..].starts_with("#[cfg(test)]") || code[at..].starts_with("#[cfg(all(test");
     code.match_indices("#[cfg(").filter(|(at, _)| is_test(*at)).map(|(at, _)| (at, item_end(code, at))).collect()
 }
 
-/// Returns where the item ends that begins at a place: behind its semicolon or its closing brace.
+/// Returns the end of the item that begins at `start`: behind its semicolon or its closing brace.
 pub(crate) fn item_end(code: &str, start: usize) -> usize {
     let mut depth = 0;
     for (at, byte) in code.bytes().enumerate().skip(start) {

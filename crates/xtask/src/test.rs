@@ -1,9 +1,10 @@
-//! `cargo xtask test`: the tests in three tiers. Tests that the machine cannot run are left out by name, with the reason
-//! said, so that the runner counts them as skipped and never as passed.
+//! `cargo xtask test`: the tests in three tiers. Tests that the machine cannot run are excluded by name, and
+//! the reason is printed, so that the runner counts them as skipped and never as passed.
 //!
-//! Tests that draw (`gpu` or `golden` in their path) and tests of all WGSL (`wgsl`) run in one process per test binary:
-//! opening a device and writing the texts takes longer than most of them. All others get a process each from nextest.
-//! Tests with `own_process` in their path measure or limit their process, so they count among the others.
+//! Tests that draw (`gpu` or `golden` in their path) and tests of all WGSL (`wgsl`) run in one process per
+//! test binary, since opening a device and writing the WGSL takes longer than most of them. Nextest runs each
+//! other test in its own process. Tests with `own_process` in their path measure or limit their process, so
+//! they always get their own.
 
 use std::collections::BTreeMap;
 use std::ffi::OsString;
@@ -20,7 +21,7 @@ use crate::process;
 use crate::rustdoc;
 use crate::setup::{self, Purpose};
 
-/// The environment variable with which the golden tests write what they would compare.
+/// The environment variable that makes golden tests write their pictures instead of comparing them.
 const UPDATE_GOLDENS: &str = "SHADOWFIT_UPDATE_GOLDENS";
 
 /// Parts of the paths of tests that draw.
@@ -29,13 +30,13 @@ const DRAWING: [&str; 2] = ["gpu", "golden"];
 /// Parts of the paths of tests that share a process.
 const SHARING: [&str; 3] = ["gpu", "golden", "wgsl::"];
 
-/// Part of the paths of tests that need a process of their own.
+/// Part of the paths of tests that need their own process.
 const OWN_PROCESS: &str = "own_process";
 
-/// The example that tests start.
+/// The example program that tests start.
 const VIEWER: &str = "viewer";
 
-/// Packages of the quick tier. None of them links egui or winit.
+/// Packages of the quick tier. They do not link egui or winit.
 const QUICK_PACKAGES: [&str; 9] = [
     "shadowfit",
     "shadowfit-adapter",
@@ -48,16 +49,16 @@ const QUICK_PACKAGES: [&str; 9] = [
     "shadowfit-wgpu",
 ];
 
-/// The quick tier's features: those that the packages' tests need.
+/// Features of the quick tier, as the packages' tests need them.
 const QUICK_FEATURES: &str = "shadowfit-wgpu/rays,shadowfit-truth/gpu";
 
-/// The tests that share a process in the quick tier: the tests of all WGSL, and one file of drawing tests for each way in
-/// which Rust and WGSL can disagree.
+/// Tests of the quick tier that share a process: the tests of all WGSL, and one file of drawing tests for
+/// each way that Rust and WGSL can disagree in.
 const QUICK_SHARING: [&str; 8] =
     ["wgsl::", "parity_gpu", "fade_gpu", "tents_gpu", "formats_gpu", "texel_offset_gpu", "culling_gpu", "cut_outs_gpu"];
 
-/// Longer runs of random cases and of the window in the tier `--all`, by environment variable. A value that is set
-/// already stays.
+/// Longer runs of random cases and of the window in the tier `--all`, by environment variable. Variables that
+/// are already set keep their values.
 const LONG_RUNS: [(&str, &str); 4] = [
     ("PROPTEST_CASES", "4096"),
     ("SHADOWFIT_MONKEY_SECONDS", "600"),
@@ -68,23 +69,24 @@ const LONG_RUNS: [(&str, &str); 4] = [
 /// The environment variable that chooses the adapter of every test that draws.
 const ADAPTER: &str = "SHADOWFIT_ADAPTER";
 
-/// Tests that need the software driver, by a part of their paths, and why.
+/// Tests that need the software driver, by a part of their paths, with the reason.
 const SOFTWARE_ONLY: [(&str, &str); 2] = [
     ("golden", "golden pictures are those of the software driver"),
     ("window::", "the window's virtual X server shows what the software driver draws"),
 ];
 
-/// Tests of pixels that a second software driver draws too: one file for each way in which drivers differ, in half a minute.
+/// Pixel tests that also run on a second software driver: one file for each kind of driver difference, half a
+/// minute in all.
 const SECOND_DRIVER: [&str; 5] =
     ["clamp_gpu", "exact_counts_gpu", "fade_gpu", "texel_offset_gpu::float", "cached_maps_gpu::gpu_reversed"];
 
-/// The tiers, for people who named another one.
+/// Help text about the tiers, for an unknown tier.
 pub(crate) const TIERS: &str = "The tiers of tests are:\n  \
     cargo xtask test --quick  the libraries without the viewer: unit and property tests, WGSL, some pictures\n  \
     cargo xtask test          the workspace: every test that finds bugs in the Rust code, goldens, the window\n  \
     cargo xtask test --all    the workspace, the page, Bevy, hours in the window, full products, many random cases";
 
-/// How many of the tests are run.
+/// Selection of the tests to run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Tier {
     /// The libraries below the renderer, in a minute.
@@ -107,18 +109,18 @@ impl Tier {
     }
 }
 
-/// Tests that are left out, and why.
+/// Tests that are excluded, and the reason.
 struct LeftOut {
     /// Part of their paths.
     name_part: &'static str,
     reason: String,
 }
 
-/// Runs the tests of a tier; with `names` (parts of paths) only those, without doc tests, page and Bevy. With `gpu` they
-/// draw on this machine's GPU.
+/// Runs the tests of a tier. With `names` (parts of paths) it runs only these tests, without doc tests, page
+/// and Bevy. With `gpu` the tests draw on this machine's GPU.
 ///
 /// # Errors
-/// When a test fails, and, where a GPU is required, when none is there.
+/// If a test fails, or if a GPU is required and missing.
 pub(crate) fn test(tier: Tier, names: &[String], gpu: bool) -> Result<()> {
     let purpose = match tier {
         Tier::Quick => Purpose::Pictures,
@@ -134,7 +136,7 @@ pub(crate) fn test(tier: Tier, names: &[String], gpu: bool) -> Result<()> {
     if gpu {
         suite.draw_on(suite.hardware_adapter()?);
     } else if let Some(name) = std::env::var_os(ADAPTER).filter(|name| !name.is_empty() && machine.can_render()) {
-        // Every test that draws would say the same.
+        // Otherwise every test that draws would report this error.
         let label = suite.adapters(["--adapter".into(), name]).context(format!("{ADAPTER} is set"))?;
         println!("tests draw on {label}");
     }
@@ -166,7 +168,7 @@ pub(crate) fn test(tier: Tier, names: &[String], gpu: bool) -> Result<()> {
 /// Runs the golden tests so that they write their pictures.
 ///
 /// # Errors
-/// When a golden test fails for another reason than its picture.
+/// If a golden test fails for another reason than its picture.
 pub(crate) fn golden() -> Result<()> {
     let machine = setup::prepare(Purpose::Test)?;
     if !machine.has(Part::SoftwareDriver) {
@@ -184,12 +186,12 @@ struct Suite {
     tier: Tier,
     features: &'static [&'static str],
     left_out: Vec<LeftOut>,
-    /// Name of the adapter that the tests draw on, unless it is the one of the environment.
+    /// Name of the adapter that the tests draw on, unless the environment chooses it.
     adapter: Option<String>,
 }
 
 impl Suite {
-    /// Returns the name of this machine's GPU, a discrete one if there is one.
+    /// Returns the name of this machine's GPU, preferring a discrete one.
     fn hardware_adapter(&self) -> Result<String> {
         let found = self.adapters(["--hardware".into()]);
         let name = found.context("`--gpu` needs a GPU. Without it, tests draw on the software adapter")?;
@@ -197,7 +199,7 @@ impl Suite {
         Ok(name)
     }
 
-    /// Builds the examples that tests start: they would otherwise start those of an earlier build.
+    /// Builds the examples that tests start. Otherwise they would start outdated ones.
     fn build_examples(&self) -> Result<()> {
         let mut build = process::cargo("build");
         build.arg("--workspace").args(self.features);
@@ -209,15 +211,15 @@ impl Suite {
         process::run(&mut build)
     }
 
-    /// Builds the example that looks for graphics adapters, and returns its output. It lists the adapters if it finds none
-    /// that fits.
+    /// Builds and runs the example that finds graphics adapters, and returns its output. If no adapter fits,
+    /// the example lists all adapters.
     fn adapters<const N: usize>(&self, arguments: [OsString; N]) -> Result<String> {
         process::run(process::cargo("build").args(self.packages()).args(["--example", "adapters"]))?;
         let program = format!("debug/examples/adapters{}", std::env::consts::EXE_SUFFIX);
         process::printed_by(Command::new(process::target_folder().join(program)).args(arguments))
     }
 
-    /// Lets the tests draw on an adapter, without the tests that need the software driver.
+    /// Makes the tests draw on an adapter, and excludes the tests that need the software driver.
     fn draw_on(&mut self, adapter: String) {
         println!("tests draw on {adapter}");
         let needing_software = SOFTWARE_ONLY.map(|(name_part, why)| LeftOut { name_part, reason: why.to_owned() });
@@ -231,7 +233,7 @@ impl Suite {
         }
     }
 
-    /// The packages with their features.
+    /// Returns cargo's arguments for the packages and their features.
     fn packages(&self) -> Vec<&'static str> {
         if self.tier == Tier::Quick {
             let packages = QUICK_PACKAGES.iter().flat_map(|package| ["--package", package]);
@@ -240,7 +242,7 @@ impl Suite {
         iter::once("--workspace").chain(self.features.iter().copied()).collect()
     }
 
-    /// The packages with their features, and the kinds of targets that hold tests.
+    /// Returns cargo's arguments for the packages, their features and the kinds of targets with tests.
     fn targets(&self) -> Vec<&'static str> {
         let mut targets = self.packages();
         targets.extend(["--lib", "--bins", "--tests", "--no-fail-fast"]);
@@ -256,13 +258,13 @@ impl Suite {
         Ok(command)
     }
 
-    /// The tests that share a device or the texts of WGSL, in one process per binary.
+    /// Returns the command for the tests that share a device or the texts of WGSL, in one process per binary.
     fn sharing(&self) -> Command {
         self.in_one_process(if self.tier == Tier::Quick { &QUICK_SHARING } else { &SHARING })
     }
 
-    /// A few tests of pixels on `SwiftShader`, which Chromium brings. Where a GPU is required, Chromium is installed and its
-    /// absence is a failure.
+    /// Runs a few pixel tests on `SwiftShader`, which Chromium includes. If a GPU is required, Chromium is
+    /// installed, and a missing `SwiftShader` is a failure.
     fn on_second_driver(&self) -> Result<()> {
         if setup::gpu_is_required() {
             setup::prepare(Purpose::SecondDriver)?;
@@ -275,7 +277,7 @@ impl Suite {
         process::run(command.env("VK_DRIVER_FILES", manifest).env(ADAPTER, "SwiftShader"))
     }
 
-    /// Tests with any of `parts` in their paths, in one process per binary.
+    /// Returns the command for tests with any of `parts` in their paths, in one process per binary.
     fn in_one_process(&self, parts: &[&str]) -> Command {
         let mut command = process::cargo("test");
         command.args(self.targets()).arg("--quiet").arg("--").args(parts).args(["--skip", OWN_PROCESS]);
@@ -289,7 +291,7 @@ impl Suite {
         self.prepared(command)
     }
 
-    /// The tests that do not draw, each in a process of its own where nextest is installed.
+    /// Runs the tests that do not draw, each in its own process if nextest is installed.
     fn others(&self) -> Result<()> {
         if has_nextest() {
             return process::run(&mut self.nextest(&self.filter_of_others()));
@@ -305,7 +307,7 @@ impl Suite {
         process::run(&mut self.prepared(own_process))
     }
 
-    /// Tests by parts of their paths, each in a process of its own.
+    /// Runs tests selected by parts of their paths, each in its own process.
     fn named(&self, names: &[String]) -> Result<()> {
         if has_nextest() {
             let left_out: Vec<String> =
@@ -328,7 +330,7 @@ impl Suite {
         self.prepared(command)
     }
 
-    /// Nextest's filter for the tests that share nothing.
+    /// Returns nextest's filter for the tests that do not share a process.
     fn filter_of_others(&self) -> String {
         let any = |parts: &[&str]| parts.iter().map(|part| format!("test({part})")).collect::<Vec<_>>().join(" | ");
         let left_out: Vec<&str> = self.left_out.iter().map(|tests| tests.name_part).collect();
@@ -371,7 +373,7 @@ impl Report {
         self.parts.push((name, result, start.elapsed()));
     }
 
-    /// Prints a line for each part, and returns the first failure.
+    /// Prints a line for each part. Returns the first failure.
     fn finish(self) -> Result<()> {
         for (name, result, time) in &self.parts {
             let verdict = if result.is_ok() { "passed" } else { "FAILED" };
@@ -381,7 +383,7 @@ impl Report {
     }
 }
 
-/// The tests of a tier that cannot run on `machine`.
+/// Returns the tests of a tier that cannot run on `machine`.
 fn left_out(machine: &Machine, tier: Tier) -> Vec<LeftOut> {
     let mut left_out = BTreeMap::new();
     if !machine.can_render() {

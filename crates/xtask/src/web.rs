@@ -1,6 +1,6 @@
-//! `cargo xtask web`: the viewer as a page. Its module is built twice: for WebGPU, and for browsers that have WebGL2 alone;
-//! the page loads one of them. Tests build one module for both. Any host serves the folder: all paths are relative, and
-//! the page needs no header.
+//! `cargo xtask web`: the viewer as a web page. Its module is built twice, for WebGPU and for browsers with
+//! only WebGL2, and the page loads one of them. Tests build one module for both. Any static host can serve
+//! the folder: all paths are relative, and the page needs no special headers.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -17,22 +17,23 @@ mod serve;
 
 pub(crate) use browser::test;
 
-/// The modules: a folder, and the feature of the viewer that it is built with.
+/// The modules: a folder, and the viewer's feature for the build.
 const MODULES: [(&str, &str); 2] = [("webgpu", "webgpu"), ("webgl2", "webgl")];
-/// The JavaScript of the second module where the first one has both features: it takes WebGPU where the browser has it.
+/// JavaScript of the second module if the first one has both features: it hides WebGPU and loads the first
+/// module.
 const WITHOUT_WEBGPU: &str = "\
     Object.defineProperty(navigator, 'gpu', { value: undefined });\n\
     export * from '../webgpu/shadowfit_viewer.js';\n\
     export { default } from '../webgpu/shadowfit_viewer.js';\n";
-/// The file of a module in its folder.
+/// File name of a module in its folder.
 const MODULE: &str = "shadowfit_viewer_bg.wasm";
-/// The picture that is shown while the module is loaded, and its width in pixels.
+/// The picture that is shown while the module loads, and its width in pixels.
 const COVER: (&str, u32) = ("docs/images/scene-courtyard.png", 960);
 
 /// Builds the page into `folder`, or serves it.
 ///
 /// # Errors
-/// When it cannot be built, written or served.
+/// If the page cannot be built, written or served.
 pub(crate) fn web(folder: Option<&Path>, port: u16) -> Result<()> {
     let is_served = folder.is_none();
     let folder = folder.map_or_else(|| process::root().join("out/web"), Path::to_owned);
@@ -42,26 +43,26 @@ pub(crate) fn web(folder: Option<&Path>, port: u16) -> Result<()> {
     }
     serve::serve(&folder, port, |address| {
         println!("serving on {address} until Ctrl+C");
-        // Without a browser the address is all there is.
+        // Without a browser the printed address is enough.
         let _ = open::that_detached(address);
     })
 }
 
-/// How the modules of a page are built.
+/// Build modes of the modules.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Modules {
-    /// Small ones, for people to load.
+    /// Small modules for users.
     Small,
-    /// The module of tests, in as little time as possible.
+    /// One module for tests, built in as little time as possible.
     Quick,
 }
 
 /// Builds the page into `folder`.
 fn build(folder: &Path, modules: Modules) -> Result<()> {
     if !has_target(WEB_TARGET) {
-        bail!("the page needs Rust's target {WEB_TARGET}: `rustup target add {WEB_TARGET}` brings it");
+        bail!("the page needs Rust's target {WEB_TARGET}: install it with `rustup target add {WEB_TARGET}`");
     }
-    fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()))?;
+    fs::create_dir_all(folder).with_context(|| format!("cannot create {}", folder.display()))?;
     match modules {
         Modules::Small => {
             for (name, feature) in MODULES {
@@ -76,7 +77,8 @@ fn build(folder: &Path, modules: Modules) -> Result<()> {
         // Writing to a String cannot fail.
         let _ = write!(sizes, "{name}: {bytes}, ");
     }
-    // The page shows how much of its module has arrived, which compressed answers do not tell.
+    // The page shows the loading progress. It needs the sizes, since compressed responses do not contain
+    // them.
     fs::write(folder.join("sizes.js"), format!("export const sizes = {{ {sizes}}};\n"))?;
     for entry in fs::read_dir(process::root().join("crates/shadowfit-viewer/web"))? {
         let file = entry?.path();
@@ -92,10 +94,10 @@ fn module(folder: &Path, features: &str, options: &[&str]) -> Result<()> {
     let mut compiler = process::cargo("rustc");
     compiler.args(["--package", "shadowfit-viewer", "--lib", "--crate-type", "cdylib"]).args(options);
     compiler.args(["--target", WEB_TARGET, "--no-default-features", "--features", features]);
-    // Cargo names the folder of its profile `dev` otherwise.
+    // Cargo's folder for the profile `dev` is named `debug`.
     let profile = if options.contains(&"web") { "web" } else { "debug" };
     if profile == "debug" && process::succeeds(process::cargo("clippy").arg("--version")) {
-        // Code for browsers alone is linted nowhere else.
+        // Code that is only for browsers is not linted elsewhere.
         process::with_lints(&mut compiler);
     }
     process::run(&mut compiler)?;

@@ -1,4 +1,5 @@
-//! A sun that moves all day: what its shadows cost, and how far an edge jumps from one frame to the next.
+//! A sun that moves all day: the cost of its shadows, and the largest jump of an edge from one frame to the
+//! next.
 
 use anyhow::{Context, Result};
 use glam::{DQuat, DVec3, Vec3};
@@ -15,14 +16,15 @@ use super::scene::BenchScene;
 use super::timer::Timer;
 use crate::table::{Table, ms};
 
-/// Frames of the day, in frames that other parts time: a minute at 60 frames a second, with 240 of them.
+/// Frames of the day, as a multiple of the frames that other parts time. With 240 of them, it is a minute at
+/// 60 frames a second.
 const FRAMES: usize = 15;
 const RATE: f64 = 60.0;
 
-/// Frames in which windows settle, after which a change is the sun's.
+/// Frames until windows are settled. Later changes are caused by the sun.
 const SETTLED: usize = 120;
 
-/// The hour at which it begins, and by how much the sun turns in a second, in radians.
+/// Hour of the start, and rotation of the sun per second, in radians.
 const HOUR: f32 = 10.0;
 const REAL: f64 = core::f64::consts::TAU / 86_400.0;
 
@@ -54,10 +56,10 @@ const COLUMNS: [&str; 9] = [
     "of a factor",
 ];
 
-/// What a day took.
+/// Measurements of a day.
 #[derive(Default)]
 struct Taken {
-    /// Texels that each frame drew.
+    /// Texels drawn in each frame.
     texels: Vec<f64>,
     /// Time of the shadow passes, in milliseconds.
     gpu: Vec<f64>,
@@ -75,7 +77,7 @@ struct Sun {
 impl Sun {
     fn new(speed: f64) -> Self {
         let at = |hour: f32| LightSettings { hour: Some(hour), ..LightSettings::default() }.direction().as_dvec3();
-        // The way of the sun is a great circle through the east.
+        // The sun moves along a great circle through the east.
         Self { morning: at(HOUR).normalize(), axis: at(12.0).cross(at(18.0)).normalize(), speed }
     }
 
@@ -84,7 +86,8 @@ impl Sun {
     }
 }
 
-/// A day in one way, seen from one place where nothing but the sun moves, or along the walk.
+/// A day with one way of following the sun. The camera either stands still, so that only the sun moves, or
+/// walks.
 #[derive(Clone, Copy)]
 struct Run<'a> {
     way: Way,
@@ -92,7 +95,7 @@ struct Run<'a> {
     walks: bool,
 }
 
-/// The picture of factors that a standing camera sees.
+/// The picture of factors from a camera that stands still.
 struct Picture {
     pass: Fullscreen,
     surfaces: Surfaces,
@@ -107,7 +110,7 @@ impl Picture {
         Ok(Self { pass, surfaces, before: Factors::new() })
     }
 
-    /// What has changed since the frame before.
+    /// Returns the change since the previous frame.
     fn change(&mut self, gpu: &Gpu, engine: &Engine<'_>, timer: &mut Timer) -> Result<Change> {
         timer.frame(gpu, |encoder, times| {
             self.pass.record(encoder, Some(engine.sun.map()), times);
@@ -132,7 +135,7 @@ fn day(bench: &Bench, scene: &BenchScene, run: &Run<'_>) -> Result<Taken> {
     let mut picture: Option<Picture> = None;
     let warm_up = bench.warm_up().max(SETTLED);
     for frame in 0..warm_up + bench.frames * FRAMES {
-        // The sun rises when the windows are settled.
+        // The sun starts to move when the windows are settled.
         engine.direction = sun.direction(frame.saturating_sub(warm_up));
         let place = if walks { frame } else { 0 };
         let camera = engine.camera(place);
@@ -160,8 +163,8 @@ fn day(bench: &Bench, scene: &BenchScene, run: &Run<'_>) -> Result<Taken> {
     Ok(taken)
 }
 
-/// All ways, at the sun's real speed and so fast that it steps once a second. On software adapters, whose times say
-/// little, only the fast one, and no walk.
+/// Times all ways, at the sun's real speed and at a speed of one light step per second. Software adapters,
+/// whose times mean little, only run the latter, without the walk.
 pub(crate) fn time(bench: &Bench, scene: &BenchScene) -> Result<Table> {
     let fast = 2.0 * f64::from(AT_ONCE.texels) / f64::from(bench.map);
     let mut rows = Vec::new();
@@ -189,9 +192,10 @@ pub(crate) fn time(bench: &Bench, scene: &BenchScene) -> Result<Table> {
     Ok(Table {
         title: "A sun that moves all day",
         note: format!(
-            "{:.0} seconds of the {} at 60 frames a second: texels drawn in a frame, time of the shadow passes, and the \
-             largest change between two frames in {} × {} pixels, seen from one place where only the sun moves; then \
-             the time along the walk, where every tenth node bobs. Real is 15° an hour, fast a step a second, {:.3}°.",
+            "{:.0} seconds of the {} at 60 frames a second: texels drawn per frame, time of the shadow passes, and \
+             the largest change between two frames in {} × {} pixels, from one place where only the sun moves. Then \
+             the time along the walk, where every tenth node bobs. Real is 15° an hour, fast is one light step a \
+             second, {:.3}°.",
             (bench.frames * FRAMES) as f64 / RATE,
             scene.name,
             SIZE[0],

@@ -1,10 +1,11 @@
-//! How far the edges of shadows move in a picture from one frame to the next.
+//! Movement of shadow edges in a picture from one frame to the next.
 //!
-//! An edge is where the factor crosses one half between two neighbouring pixels of one surface, with a place between
-//! them by linear interpolation. Its movement is the distance to the place where the same row (for edges that are
-//! steeper than 45° in the picture; else the same column) is crossed in the same direction in the next frame, times the
-//! cosine of the edge's slant, which makes it the distance across the edge, in pixels. Every fourth row and column is
-//! looked at. Shadows that come or go have no such place, and count in the change of the factor alone.
+//! An edge is a crossing of 0.5 by the factor between two neighbouring pixels of one surface. Linear
+//! interpolation gives its position. The movement of an edge is measured along a row (for edges steeper than
+//! 45° in the picture) or else along a column, to the crossing with the same direction in the next frame.
+//! Multiplied by the cosine of the edge's slant, it is the distance perpendicular to the edge, in pixels.
+//! Every fourth row and column is examined. Shadows that appear or disappear have no such crossing, and only
+//! count in the change of the factor.
 
 use glam::{Mat4, Vec3};
 use shadowfit::{DepthConvention, PerspectiveCamera};
@@ -16,28 +17,30 @@ pub(crate) type Factors = Vec<u8>;
 
 const HALF: f32 = 127.5;
 
-/// Least change of the factor over a pixel, in 255ths: what is softer is no edge to the eye.
+/// Least change of the factor per pixel, in 255ths. Softer transitions are not visible as edges.
 const LEAST_SLOPE: f32 = 12.0;
 
-/// Greatest movement along a row that counts as one edge's, in pixels. Shadows that come or go are none.
+/// Greatest movement along a row that counts as one edge's, in pixels. Larger ones are shadows that appear or
+/// disappear.
 const REACH: f32 = 16.0;
 
-/// Pixels around one that must show the same surface.
+/// Pixels around a pixel that must show the same surface.
 const AROUND: isize = 2;
 
-/// Rows and columns from one that is looked at to the next.
+/// Distance between examined rows, and between examined columns, in pixels.
 const LINES: usize = 4;
 
-/// Greatest second difference of a plane's reversed depth, as a share of it: that of f32 and slight curvature.
+/// Greatest second difference of a plane's reversed depth, as a share of it. It allows for f32 rounding and
+/// slight curvature.
 const BENT: f32 = 1e-4;
 
-/// Least cosine between a surface's normal and the light's: beside it the factor is hidden by the shading.
+/// Least cosine between a surface's normal and the light's direction. Below it the shading hides the factor.
 const LEAST_COSINE: f32 = 0.15;
 
-/// The pixels of a picture where edges are sought: on surfaces that face the light, away from silhouettes.
+/// Pixels in which edges are searched: on surfaces that face the light, away from silhouettes.
 pub(crate) struct Surfaces(Vec<bool>);
 
-/// What changed from one picture to the next.
+/// Change from one picture to the next.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Change {
     /// Greatest movement of an edge, in pixels.
@@ -47,13 +50,13 @@ pub(crate) struct Change {
 }
 
 impl Change {
-    /// The greater of each.
+    /// Returns the maximum of each field.
     pub(crate) fn max(self, other: Self) -> Self {
         Self { jump: self.jump.max(other.jump), factor: self.factor.max(other.factor) }
     }
 }
 
-/// A place where a line of pixels crosses one half.
+/// A crossing of 0.5 on a line of pixels.
 #[derive(Clone, Copy)]
 struct Crossing {
     at: f32,
@@ -76,7 +79,7 @@ const HEIGHT: usize = SIZE[1] as usize;
 const ALONG: [usize; 2] = [1, WIDTH];
 
 impl Surfaces {
-    /// Those of a reversed depth buffer that a camera has filled, under light that travels in `direction`.
+    /// Finds the pixels in a camera's reversed depth buffer, under light that travels in `direction`.
     pub(crate) fn new(depths: &[f32], camera: &PerspectiveCamera, direction: Vec3) -> Self {
         let [width, height] = SIZE.map(|side| side as f32);
         let from_pixel = Mat4::from_cols_array_2d(&[
@@ -110,7 +113,7 @@ impl Surfaces {
         Self((0..depths.len()).map(|index| inner(index, AROUND as usize + 1) && around(index)).collect())
     }
 
-    /// What changed between two pictures.
+    /// Returns the change between two pictures.
     pub(crate) fn change(&self, before: &Factors, now: &Factors) -> Change {
         if before == now {
             return Change::default();
@@ -130,7 +133,7 @@ impl Surfaces {
         Change { jump, factor: f32::from(factor) / 255.0 }
     }
 
-    /// The crossings of a row or a column, in their order.
+    /// Finds the crossings of a row or a column, in their order.
     fn crossings(&self, factors: &Factors, line: &Line, found: &mut Vec<Crossing>) {
         let Line { along, number, length } = *line;
         found.clear();
@@ -154,7 +157,7 @@ impl Surfaces {
     }
 }
 
-/// The greatest movement of crossings that are each other's nearest in two frames.
+/// Returns the greatest movement of crossings that are each other's nearest in two frames.
 fn greatest_move(old: &[Crossing], new: &[Crossing]) -> f32 {
     let nearest = |of: &Crossing, among: &[Crossing]| {
         let like = among.iter().filter(|other| other.is_rising == of.is_rising);

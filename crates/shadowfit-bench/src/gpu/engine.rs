@@ -48,7 +48,7 @@ pub(crate) struct Engine<'a> {
     pub(crate) depth: wgpu::TextureView,
     /// Direction of travel of the light.
     pub(crate) direction: Vec3,
-    /// Casters of the scene in the order in which they are told, their boxes, and which of them move.
+    /// Casters of the scene in the order in which they are passed on, their boxes, and whether they move.
     shown: Vec<u32>,
     boxes: Vec<Aabb>,
     moves: Vec<bool>,
@@ -90,7 +90,7 @@ impl<'a> Engine<'a> {
         })
     }
 
-    /// Holds the maps of a sun that moves.
+    /// Sets the light steps of a moving sun.
     pub(crate) fn set_light_steps(&mut self, steps: Option<LightSteps>) -> Result<()> {
         if self.sun.set_light_steps(steps)? {
             self.caster_pipeline = caster_pipeline(&Maker { device: &self.gpu.device, samples: 1 }, self.sun.map());
@@ -98,17 +98,17 @@ impl<'a> Engine<'a> {
         Ok(())
     }
 
-    /// The device that it draws on.
+    /// Returns the device.
     pub(crate) fn gpu(&self) -> &'a Gpu {
         self.gpu
     }
 
-    /// Lets all casters stand still.
+    /// Stops all casters.
     pub(crate) fn stand_still(&mut self) {
         self.moves.fill(false);
     }
 
-    /// Tells these casters of the scene alone, in this order.
+    /// Passes on only these casters of the scene, in this order.
     pub(crate) fn show(&mut self, numbers: &[u32]) {
         self.shown.clear();
         self.shown.extend(numbers);
@@ -116,18 +116,18 @@ impl<'a> Engine<'a> {
         self.moves.extend(numbers.iter().map(|number| self.scene.casters[*number as usize].moves));
     }
 
-    /// The camera of a frame.
+    /// Returns the camera of a frame.
     pub(crate) fn camera(&self, frame: usize) -> PerspectiveCamera {
         self.scene.camera(frame, SIZE[0] as f32 / SIZE[1] as f32)
     }
 
-    /// Moves what moves, and fits the maps.
+    /// Moves the moving casters, and fits the maps.
     pub(crate) fn update(&mut self, frame: usize) -> Result<()> {
         self.move_casters(frame);
         self.fit(&self.camera(frame))
     }
 
-    /// Moves what moves, and the camera.
+    /// Moves the moving casters and the camera.
     pub(crate) fn move_casters(&mut self, frame: usize) {
         let camera = self.camera(frame);
         let (scene, queue) = (self.scene, &self.gpu.queue);
@@ -145,7 +145,7 @@ impl<'a> Engine<'a> {
         queue.write_buffer(&self.camera_uniform, 0, bytemuck::cast_slice(&clip_from_world));
     }
 
-    /// The part of a frame that shadows take on the CPU before the passes.
+    /// Executes the CPU work of a frame's shadows before the passes.
     pub(crate) fn fit(&mut self, camera: &PerspectiveCamera) -> Result<()> {
         let boxes = Boxes { boxes: &self.boxes, ..Boxes::default() };
         let casters = Casters { moves: &self.moves, ..Casters::fixed(boxes) };
@@ -154,7 +154,7 @@ impl<'a> Engine<'a> {
         Ok(())
     }
 
-    /// The shadow passes, timed or not.
+    /// Records the shadow passes, with or without timing.
     pub(crate) fn shadow_passes(&self, encoder: &mut wgpu::CommandEncoder, timer: Option<&GpuTimer>) {
         for shadow in self.sun.passes() {
             let query = timer.and_then(|timer| timer.begin("shadow", encoder));
@@ -171,7 +171,7 @@ impl<'a> Engine<'a> {
         }
     }
 
-    /// The depth of what the camera sees, and what it shows for the next frames.
+    /// Records the depth pass of the camera, and the visible demand for the next frames.
     pub(crate) fn seen_pass(&mut self, encoder: &mut wgpu::CommandEncoder, camera: &PerspectiveCamera) -> Result<()> {
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             depth_stencil_attachment: Some(attachment::depth(&self.depth)),
@@ -203,7 +203,7 @@ impl<'a> Engine<'a> {
         }
     }
 
-    /// The maps of this frame, as they are drawn into other layers.
+    /// Returns the maps of this frame, for drawing into other layers.
     pub(crate) fn maps(&self) -> (Vec<FittedMap>, MapView) {
         let maps: Vec<FittedMap> = self.sun.fitted().to_vec();
         let origin = maps.first().map_or(glam::DVec3::ZERO, |map| map.projection.origin);
@@ -211,7 +211,7 @@ impl<'a> Engine<'a> {
     }
 }
 
-/// What a pass draws a picture into.
+/// Creates the texture of a picture.
 pub(crate) fn target(device: &wgpu::Device, size: [u32; 2], format: wgpu::TextureFormat) -> wgpu::TextureView {
     let usage =
         wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_SRC;

@@ -1,4 +1,4 @@
-//! Culling of many instances, half of which can cast no shadow into view.
+//! Culling of many instances. Half of them cannot cast shadows into view.
 
 use anyhow::Result;
 use shadowfit_wgpu::Culling;
@@ -32,8 +32,8 @@ pub(crate) fn time(bench: &Bench) -> Result<Table> {
     Ok(Table {
         title: "Culling of 10,000 boxes",
         note: format!(
-            "{INSTANCES} boxes, a draw call each, half of them behind the eye and away from the sun; all maps drawn anew. \
-             CPU is fit, culling and encoding."
+            "{INSTANCES} boxes, one draw call each, half of them behind the eye and away from the sun. All maps are \
+             redrawn. CPU is fit, culling and encoding."
         ),
         columns: ["culling", "GPU", "of none", "CPU", "of none", "draws"].map(str::to_owned).to_vec(),
         rows,

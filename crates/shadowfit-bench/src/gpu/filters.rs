@@ -1,4 +1,4 @@
-//! The look-up by each filter and format.
+//! Time of the look-up with each filter and format.
 
 use anyhow::Result;
 use shadowfit::Technique;
@@ -15,12 +15,12 @@ use crate::times::median;
 /// Frames until windows are settled.
 const SETTLED: usize = 60;
 
-/// What is looked up, and how.
+/// A filter and a format.
 struct Case {
     name: &'static str,
     filter: FilterKind,
     format: MapFormat,
-    /// Whether discs are turned from pixel to pixel.
+    /// Whether discs are rotated from pixel to pixel.
     is_turned: bool,
 }
 
@@ -55,9 +55,9 @@ pub(crate) fn time(bench: &Bench, scene: &BenchScene) -> Result<Table> {
     Ok(Table {
         title: "The look-up",
         note: format!(
-            "A triangle over 1920 × 1080 pixels of the {} that takes positions from the depth buffer and computes \
-             `shadowfit_factor_at` alone, as a whole, of that with the hardware's 2×2, and without the time of positions \
-             and normals.",
+            "A full-screen triangle over 1920 × 1080 pixels of the {} that computes positions from the depth buffer, \
+             and only `shadowfit_factor_at`: as a whole, relative to the hardware's 2×2, and without the time of \
+             positions and normals.",
             scene.name
         ),
         columns: ["filter", "time", "of 2×2", "look-up alone"].map(str::to_owned).to_vec(),
@@ -65,7 +65,7 @@ pub(crate) fn time(bench: &Bench, scene: &BenchScene) -> Result<Table> {
     })
 }
 
-/// Times of the pass, and of the same without the look-up.
+/// Returns the time of the pass, and without the look-up.
 fn of_filter(bench: &Bench, scene: &BenchScene, case: &Case) -> Result<(f64, f64)> {
     let gpu = &bench.gpu;
     let technique =

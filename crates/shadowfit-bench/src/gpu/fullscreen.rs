@@ -1,4 +1,4 @@
-//! The look-up alone: a triangle over the picture that takes positions from the depth buffer.
+//! The look-up alone: a full-screen triangle that computes positions from the depth buffer.
 
 use glam::Mat4;
 use shadowfit::{DepthConvention, PerspectiveCamera};
@@ -40,8 +40,8 @@ pub(crate) struct Fullscreen {
 }
 
 impl Fullscreen {
-    /// The pass that looks up a map at the positions of a depth buffer, its discs turned from pixel to pixel or not; without
-    /// a map it takes positions alone.
+    /// Creates the pass that looks up a map at the positions of a depth buffer. The flag beside the map
+    /// rotates discs from pixel to pixel. Without a map, the pass only computes positions.
     pub(crate) fn new(
         gpu: &Gpu,
         map: Option<(&ShadowMap, bool)>,

@@ -1,9 +1,10 @@
-//! `shadowfit-bench gpu`: times shadows on a GPU: redrawn and cached passes, culling, filters, the pass over the depth
-//! buffer, a sun that moves, exact edges, rays.
+//! `shadowfit-bench gpu`: times shadows on a GPU: redrawn and cached passes, culling, filters, the pass over
+//! the depth buffer, a moving sun, exact edges, rays.
 //!
-//! A small engine with its own buffers and pipelines draws each scene through `SunShadows` while a camera walks at
-//! 1.5 m/s and turns by 10° a second, 60 frames a second, and every tenth node bobs by half a metre once a second. Times
-//! are medians by the GPU's clock, from the begin of a frame's first shadow pass to the end of the last one.
+//! A small engine with its own buffers and pipelines draws each scene through `SunShadows`. The camera walks
+//! at 1.5 m/s and turns by 10° a second, at 60 frames a second. Every tenth node bobs by half a metre once a
+//! second. Times are medians by the GPU's clock, from the start of a frame's first shadow pass to the end of
+//! the last one.
 
 mod day;
 mod edges;
@@ -34,23 +35,23 @@ use crate::table::Table;
 
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// Replace the tables in docs/BENCHMARKS.md
+    /// Write the tables to docs/figures/gpu.md
     #[arg(long)]
     page: bool,
-    /// Takes the tables from a file that `--out` wrote on another machine, and measures nothing
+    /// Take the tables from a file that `--out` wrote on another machine, without measuring
     #[arg(long, value_name = "FILE", requires = "page", conflicts_with_all = ["scenes", "out", "only"])]
     from: Option<PathBuf>,
-    /// glTF files, beside the built-in scene
+    /// glTF files, in addition to the built-in scene
     scenes: Vec<PathBuf>,
-    /// Frames that are timed of each way of drawing, after a fifth as many to warm up; 240, on software adapters 5
+    /// Timed frames for each way of drawing, after a warm-up of a fifth; default 240, on software adapters 5
     #[arg(long)]
     frames: Option<usize>,
-    /// Where the tables are written, as Markdown
+    /// Markdown file for the tables
     #[arg(long)]
     out: Option<PathBuf>,
     #[command(flatten)]
     adapter: AdapterOptions,
-    /// Width and height of the maps, in texels; some are drawn at half of it
+    /// Width and height of the maps, in texels; some maps have half of it
     #[arg(long, default_value_t = 2048, value_parser = clap::value_parser!(u32).range(512..=8192))]
     map: u32,
     /// Height of the picture of exact edges, in pixels, in place of 720 and 1080
@@ -61,22 +62,22 @@ pub(crate) struct Args {
     only: Vec<Part>,
 }
 
-/// What is timed.
+/// Part of the benchmark.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Part {
-    /// Shadow passes, drawn anew and kept
+    /// Shadow passes, redrawn and cached
     Passes,
-    /// Orders, formats and rectangles that lower the fill
+    /// Caster orders, formats and rectangles that reduce the fill
     Fill,
     /// Culling of 10,000 instances
     Culling,
-    /// A walk on which casters come and go
+    /// A walk during which casters appear and disappear
     Streaming,
-    /// The look-up by each filter
+    /// The look-up with each filter
     Filters,
     /// The pass over the depth buffer
     Demand,
-    /// A minute of a sun that moves
+    /// A minute with a moving sun
     Day,
     /// Exact edges, and the instances of their rays
     Edges,
@@ -84,7 +85,7 @@ enum Part {
     Rays,
 }
 
-/// What all parts share.
+/// Settings that all parts share.
 struct Bench {
     gpu: Gpu,
     frames: usize,
@@ -92,7 +93,7 @@ struct Bench {
     height: Option<u32>,
 }
 
-/// Frames on a GPU, and on software adapters, whose times say little.
+/// Frames on a GPU, and on software adapters, whose times mean little.
 const FRAMES: usize = 240;
 const SOFTWARE_FRAMES: usize = 5;
 
@@ -117,7 +118,7 @@ impl Part {
     }
 }
 
-/// Times shadows, and prints and writes the tables.
+/// Times shadows, then prints and writes the tables.
 pub(crate) fn run(args: &Args) -> Result<()> {
     if let Some(file) = &args.from {
         let tables = fs::read_to_string(file).with_context(|| format!("{}: cannot be read", file.display()))?;

@@ -1,4 +1,4 @@
-//! Shadow passes: drawn anew and kept, with and without culling, and what lowers their fill.
+//! Shadow passes: redrawn and cached, with and without culling, and ways to reduce their fill.
 
 use std::time::Instant;
 
@@ -27,35 +27,35 @@ pub(crate) struct Way {
     schedule: UpdateSchedule,
 }
 
-/// Far maps in every second, fourth and eighth frame.
+/// Far maps are updated in every second, fourth and eighth frame.
 const FAR_MAPS_LATER: UpdateSchedule = UpdateSchedule::Every([1, 2, 4, 8, 1, 1, 1, 1]);
 
 const WAYS: [Way; 5] = [
-    way("anew, swept volumes", false, Culling::Swept),
-    way("anew, whole maps", false, Culling::WholeMap),
-    way("anew, no culling", false, Culling::Off),
-    way("kept", true, Culling::Swept),
-    Way { schedule: FAR_MAPS_LATER, ..way("kept, far maps later", true, Culling::Swept) },
+    way("redrawn, swept volumes", false, Culling::Swept),
+    way("redrawn, whole maps", false, Culling::WholeMap),
+    way("redrawn, no culling", false, Culling::Off),
+    way("cached", true, Culling::Swept),
+    Way { schedule: FAR_MAPS_LATER, ..way("cached, far maps later", true, Culling::Swept) },
 ];
 
 pub(crate) const fn way(name: &'static str, keeps: bool, culling: Culling) -> Way {
     Way { name, keeps, culling, schedule: UpdateSchedule::EveryFrame }
 }
 
-/// What a way of drawing took.
+/// Measurements of a way of drawing.
 #[derive(Default)]
 pub(crate) struct Taken {
     pub(crate) gpu: Vec<f64>,
     pub(crate) cpu: Vec<f64>,
     pub(crate) draws: Vec<f64>,
-    /// Texels of the rectangles that are drawn.
+    /// Texels of the drawn rectangles.
     pub(crate) texels: Vec<f64>,
-    /// Frames in which a whole layer was cleared.
+    /// Number of frames in which a whole layer was cleared.
     cleared: usize,
 }
 
 impl Taken {
-    /// Counts what a frame drew.
+    /// Counts the draws and texels of a frame.
     fn count(&mut self, sun: &SunShadows) {
         let draws = sun.passes().flat_map(|pass| pass.regions()).map(|region| region.casters.len());
         self.draws.push(draws.sum::<usize>() as f64);
@@ -66,7 +66,7 @@ impl Taken {
 }
 
 impl Engine<'_> {
-    /// Draws a frame whose times do not count, and waits for what it shows.
+    /// Draws a frame without timing, and waits for its visible demand.
     fn draw_untimed(&mut self, timer: &mut Timer, camera: &PerspectiveCamera) -> Result<()> {
         timer.frame(self.gpu(), |encoder, _| {
             self.shadow_passes(encoder, None);
@@ -82,13 +82,13 @@ impl Bench {
         Technique::default().with_resolution(self.map, self.map)
     }
 
-    /// Frames before those that are timed, in which windows settle.
+    /// Returns the number of frames before the timed ones, in which windows settle.
     pub(crate) fn warm_up(&self) -> usize {
         if self.gpu.is_software() { 3 } else { self.frames / 5 + 30 }
     }
 }
 
-/// Frames of a scene along its walk, drawn in one way; what comes and goes in a frame is told by `stream`.
+/// Draws frames of a scene along its walk, in one way. `stream` adds and removes casters in each frame.
 pub(crate) fn walk(
     bench: &Bench,
     scene: &BenchScene,
@@ -128,7 +128,7 @@ pub(crate) fn walk(
     Ok(taken)
 }
 
-/// Redrawn in each frame, and cached.
+/// Times passes that are redrawn in each frame, and cached passes.
 pub(crate) fn time(bench: &Bench, scenes: &[BenchScene]) -> Result<Table> {
     let mut rows = Vec::new();
     for scene in scenes {
@@ -160,12 +160,12 @@ pub(crate) fn time(bench: &Bench, scenes: &[BenchScene]) -> Result<Table> {
             String::new(),
         ]);
     }
-    let columns = ["scene, way", "GPU, median", "of anew", "GPU, mean", "CPU", "draws", "frames with a whole map"];
+    let columns = ["scene, way", "GPU, median", "of redrawn", "GPU, mean", "CPU", "draws", "frames with a whole map"];
     Ok(Table {
         title: "Shadow passes",
-        note: "Along the walk. CPU is fit, culling and encoding up to `finish`. Bare passes are cleared depth-only passes \
-               with the matrices and casters of the first row, in the order of their numbers; the other rows draw what \
-               is nearest to the light first."
+        note: "Along the walk. CPU is fit, culling and encoding up to `finish`. Bare passes are cleared depth-only \
+            passes with the matrices and casters of the first row, in the order of their numbers. The other rows draw \
+            the casters nearest to the light first."
             .to_owned(),
         columns: columns.map(str::to_owned).to_vec(),
         rows,
@@ -181,7 +181,7 @@ enum Order {
 }
 
 impl Order {
-    /// Sorts casters that come nearest first.
+    /// Sorts casters, which are given nearest first.
     fn sorted(self, mut casters: Vec<u32>) -> Vec<u32> {
         match self {
             Self::NearestFirst => {}
@@ -192,7 +192,7 @@ impl Order {
     }
 }
 
-/// Passes that an engine would write by itself.
+/// Shadow passes without the library, as an engine would write them.
 #[derive(Clone, Copy, PartialEq)]
 struct Bare {
     order: Order,
@@ -212,7 +212,7 @@ const BARE: Bare = Bare {
     is_empty: false,
 };
 
-/// Times of passes with the matrices of the walk.
+/// Returns times of bare passes with the matrices of the walk.
 fn bare_passes(bench: &Bench, scene: &BenchScene, bare: Bare) -> Result<Vec<f64>> {
     let gpu = &bench.gpu;
     let side = if bare.is_quarter { bench.map / 2 } else { bench.map };
@@ -253,7 +253,7 @@ fn bare_passes(bench: &Bench, scene: &BenchScene, bare: Bare) -> Result<Vec<f64>
     Ok(times)
 }
 
-/// What lowers the fill of maps that are redrawn.
+/// Times ways to reduce the fill of redrawn maps.
 pub(crate) fn time_fill(bench: &Bench, scenes: &[BenchScene]) -> Result<Table> {
     let ways = [
         ("casters as stored", Bare { order: Order::AsStored, ..BARE }),
@@ -275,16 +275,16 @@ pub(crate) fn time_fill(bench: &Bench, scenes: &[BenchScene]) -> Result<Table> {
     }
     Ok(Table {
         title: "Fill",
-        note: "Bare passes, every map drawn anew, with the casters of shadows in view.".to_owned(),
+        note: "Bare passes, every map redrawn, with the casters of visible shadows.".to_owned(),
         columns: ["scene, way", "time", "of the first"].map(str::to_owned).to_vec(),
         rows,
     })
 }
 
-const DEMAND_NOTE: &str = "The compute pass that counts what a depth buffer of 1920 × 1080 pixels shows: points, cells of \
-                           the grid that have some, and octaves of texels that do.";
+const DEMAND_NOTE: &str = "The compute pass that counts the visible points in a depth buffer of 1920 × 1080 pixels: \
+    points, cells of the grid with points, and octaves of texels with points.";
 
-/// The pass over the depth buffer.
+/// Times the pass over the depth buffer.
 pub(crate) fn time_demand(bench: &Bench, scenes: &[BenchScene]) -> Result<Table> {
     let gpu = &bench.gpu;
     let mut rows = Vec::new();
@@ -327,7 +327,7 @@ pub(crate) fn time_demand(bench: &Bench, scenes: &[BenchScene]) -> Result<Table>
     })
 }
 
-/// Points in the grid, cells that have some, and octaves of texels that do.
+/// Returns the number of points in the grid, of cells with points, and of texel octaves with points.
 fn counts(seen: &VisibleDemand) -> [f64; 3] {
     let counts = seen.demand().counts;
     let has_some = |counts: &[u32]| counts.iter().any(|count| *count > 0);
@@ -337,7 +337,8 @@ fn counts(seen: &VisibleDemand) -> [f64; 3] {
     [f64::from(points), cells as f64, octaves as f64]
 }
 
-/// Frames of a scene, redrawn with one kind of culling: times on the GPU and on the CPU.
+/// Draws frames of a scene, redrawn with one kind of culling. Returns medians of the times on GPU and CPU,
+/// and of the number of draws.
 pub(crate) fn with_culling(bench: &Bench, scene: &BenchScene, culling: Culling) -> Result<[f64; 3]> {
     let taken = walk(bench, scene, way("", false, culling), |_, _| {})?;
     Ok([taken.gpu, taken.cpu, taken.draws].map(median))

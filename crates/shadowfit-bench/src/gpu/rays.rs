@@ -1,4 +1,4 @@
-//! Rays and classes on the GPU: what a live judgement takes.
+//! Rays and classes on the GPU: the time of a live judgement.
 
 use std::path::PathBuf;
 
@@ -14,7 +14,7 @@ use shadowfit_wgpu::ShadowMapDescriptor;
 use super::Bench;
 use crate::table::{Table, ms};
 
-/// Pixels that are judged.
+/// Size of the judged picture, in pixels.
 const SIZE: [u32; 2] = [1280, 720];
 
 pub(crate) fn time(bench: &Bench, files: &[PathBuf]) -> Result<Table> {
@@ -46,7 +46,7 @@ pub(crate) fn time(bench: &Bench, files: &[PathBuf]) -> Result<Table> {
     }
     Ok(Table {
         title: "Truth on the GPU",
-        note: "A ray for each of 1280 × 720 pixels, the distances to edges, and the class.".to_owned(),
+        note: "One ray for each of 1280 × 720 pixels, the distances to edges, and the class.".to_owned(),
         columns: ["scene", "triangles", "time"].map(str::to_owned).to_vec(),
         rows,
     })

@@ -1,4 +1,4 @@
-//! Scenes as the engine draws them: triangles in world space, cut into casters, and a walk.
+//! Scenes of the engine: triangles in world space, divided into casters, and a walk.
 
 use std::path::Path;
 
@@ -17,30 +17,30 @@ const RATE: f64 = 60.0;
 const SPEED: f64 = 1.5;
 const TURN: f64 = 10.0 * core::f64::consts::PI / 180.0;
 
-/// Every tenth node moves, by this far in metres, once a second.
+/// Every tenth node moves, by this amplitude in metres, once a second.
 const MOVING: usize = 10;
 const BOB: f32 = 0.5;
 
-/// Places a side that are tried for the eye, and its height over the ground, in metres.
+/// Candidate places for the eye along a side, and its height above the ground, in metres.
 const PLACES: u16 = 9;
 const EYE: f32 = 1.7;
 
-/// What casts, as one draw.
+/// A caster, which is one draw.
 pub(crate) struct Caster {
     /// Its vertices.
     pub(crate) vertices: core::ops::Range<u32>,
-    /// World space, in metres, at rest.
+    /// Bounds in world space at rest, in metres.
     pub(crate) bounds: Aabb,
     pub(crate) moves: bool,
 }
 
-/// A scene to be timed.
+/// A scene of the benchmark.
 pub(crate) struct BenchScene {
     pub(crate) name: String,
     /// Corners of the triangles, in world space, in metres.
     pub(crate) vertices: Vec<Vec3>,
     pub(crate) casters: Vec<Caster>,
-    /// Where the walk begins, and the angle to the right of -z at which it looks, in radians.
+    /// Start of the walk, and the angle of its direction to the right of -z, in radians.
     eye: DVec3,
     yaw: f64,
 }
@@ -86,7 +86,8 @@ impl BenchScene {
         Self { name: name.to_owned(), vertices, casters, eye, yaw }
     }
 
-    /// A field of instances. Half of them cannot cast a shadow into view: they stand behind the eye, away from the sun.
+    /// Builds a field of instances. Half of them cannot cast shadows into view: they are behind the eye, away
+    /// from the sun.
     pub(crate) fn field(instances: u16) -> Self {
         let instance = |index: u16| {
             let place = |base: f64, size: f64| ((f64::from(index) * base).fract() * size) as f32;
@@ -98,7 +99,7 @@ impl BenchScene {
         Self::of_boxes("field", DVec3::new(0.0, 1.7, 0.0), (0..instances).map(instance))
     }
 
-    /// Boxes that stand, a caster each, and an eye that begins its walk along -z.
+    /// Builds a scene of static boxes, one caster each, with an eye that starts its walk along -z.
     pub(crate) fn of_boxes(name: &str, eye: DVec3, boxes: impl Iterator<Item = Aabb>) -> Self {
         let (mut vertices, mut casters) = (Vec::new(), Vec::new());
         for bounds in boxes {
@@ -109,10 +110,10 @@ impl BenchScene {
         Self { name: name.to_owned(), vertices, casters, eye, yaw: 0.0 }
     }
 
-    /// The camera of a frame.
+    /// Returns the camera of a frame.
     pub(crate) fn camera(&self, frame: usize, aspect: f32) -> PerspectiveCamera {
         let seconds = frame as f64 / RATE;
-        // There and back, so that the walk stays in the scene.
+        // Back and forth, so that the walk stays in the scene.
         let along = SPEED * (seconds % 8.0 - 4.0).abs() - 6.0;
         let yaw = self.yaw + TURN * seconds;
         let ahead = DVec3::new(self.yaw.sin(), 0.0, -self.yaw.cos());
@@ -128,19 +129,19 @@ impl BenchScene {
         }
     }
 
-    /// How far each moving caster is from its place, in metres.
+    /// Returns the displacement of a moving caster, in metres.
     pub(crate) fn bob(frame: usize, caster: usize) -> Vec3 {
         let phase = frame as f32 / RATE as f32 + caster as f32 * 0.37;
         Vec3::Y * BOB * (phase * core::f32::consts::TAU).sin()
     }
 
-    /// Direction of travel of the light.
+    /// Returns the direction of travel of the light.
     pub(crate) fn direction() -> Vec3 {
         LightSettings::default().direction()
     }
 }
 
-/// A place near the middle of a scene, over the lowest ground that there is.
+/// Returns a place near the middle of a scene, above its lowest ground.
 fn street(vertices: &[Vec3]) -> DVec3 {
     let bounds = Aabb::from_points(vertices.iter().copied()).unwrap_or_default();
     let tracer = Tracer::new(vertices.as_chunks::<3>().0.iter().copied());

@@ -1,4 +1,4 @@
-//! A world that comes in at the front of a walk and goes at its back, as that of every engine does.
+//! A world whose objects appear at the front of a walk and disappear behind it, as in many engines.
 
 use anyhow::Result;
 use glam::{DVec3, Vec3};
@@ -12,32 +12,32 @@ use super::scene::BenchScene;
 use crate::table::{Table, ms, share};
 use crate::times::median;
 
-/// Houses that stand at a time, and how many of them come and go, every so many frames.
+/// Number of houses at a time, number of houses that are replaced at once, and frames between replacements.
 const HOUSES: u32 = 10_000;
 const STEP: u32 = 60;
 const FRAMES: usize = 10;
 
-/// Houses in a row, from the middle of one to that of the next, their width, and their least and greatest height, in
-/// metres.
+/// Houses in a row, distance between the middles of neighbouring houses, their width, and their least and
+/// greatest height, in metres.
 const ROW: u32 = 100;
 const APART: f32 = 3.0;
 const WIDTH: f32 = 2.0;
 const HEIGHTS: [f32; 2] = [2.0, 8.0];
 
-/// Where the first row stands, behind the eye; the last of those that stand at first is 117 m ahead. In metres.
+/// Distance of the first row behind the eye, in metres. The last initial row is 117 m ahead.
 const BACK: f32 = 180.0;
 
-/// Any number without a factor in common with [`HOUSES`]: strides through all of them out of order.
+/// Any number coprime to [`HOUSES`]. Its multiples visit all houses out of order.
 const STRIDE: u32 = 7919;
 
-/// The walk, kept and drawn anew.
+/// Times the walk, cached and redrawn.
 pub(crate) fn time(bench: &Bench) -> Result<Table> {
-    // The few frames of software adapters would pass before anything comes or goes.
+    // The few frames of software adapters would end before the first replacement.
     let bench = &Bench { gpu: bench.gpu.clone(), frames: bench.frames.max(2 * FRAMES), ..*bench };
     let scene = scene((bench.frames + bench.warm_up()) / FRAMES);
     let mut rows = Vec::new();
     let mut unit: Option<[f64; 3]> = None;
-    for (name, keeps) in [("anew", false), ("kept", true)] {
+    for (name, keeps) in [("redrawn", false), ("cached", true)] {
         let mut shown = at_first();
         let taken = walk(bench, &scene, way(name, keeps, Culling::Swept), |engine, frame| {
             stream(engine, &mut shown, frame);
@@ -58,20 +58,22 @@ pub(crate) fn time(bench: &Bench) -> Result<Table> {
             share(redrawn, of[2]),
         ]);
     }
-    let columns = ["way", "GPU, median", "GPU, mean", "of anew", "CPU, mean", "draws", "of anew", "texels", "of anew"];
+    let columns =
+        ["way", "GPU, median", "GPU, mean", "of redrawn", "CPU, mean", "draws", "of redrawn", "texels", "of redrawn"];
     Ok(Table {
         title: "A world that streams in",
         note: format!(
-            "{HOUSES} boxes on a ground, none of which moves. Every {FRAMES} frames {STEP} come at the front of the walk and \
-             as many go at its back, from the middle of the list, so that the others get other numbers. Draws and texels \
-             are means of a frame."
+            "{HOUSES} static boxes on a ground. Every {FRAMES} frames, {STEP} are added at the front of the walk and \
+             {STEP} are removed behind it, from the middle of the list, so the others get other numbers. Draws and \
+             texels are means per frame."
         ),
         columns: columns.map(str::to_owned).to_vec(),
         rows,
     })
 }
 
-/// The ground, all houses that stand at first, and those that come `steps` times, row by row toward the front.
+/// Builds the ground, all initial houses, and the houses of `steps` replacements, row by row toward the
+/// front.
 fn scene(steps: usize) -> BenchScene {
     let ground = Aabb::new(Vec3::new(-400.0, -0.1, -400.0), Vec3::new(400.0, 0.0, 400.0));
     let house = |number: u32| {
@@ -87,12 +89,13 @@ fn scene(steps: usize) -> BenchScene {
     BenchScene::of_boxes("streaming", DVec3::new(0.0, 1.7, 0.0), [ground].into_iter().chain(houses))
 }
 
-/// Numbers of the casters that stand at first, out of order: the ground, which is caster 0, and the houses after it.
+/// Returns the numbers of the initial casters, out of order: the ground, which is caster 0, and the houses
+/// after it.
 fn at_first() -> Vec<u32> {
     [0].into_iter().chain((0..HOUSES).map(|place| 1 + place * STRIDE % HOUSES)).collect()
 }
 
-/// What comes and goes in a frame.
+/// Replaces casters in a frame, if it is time.
 fn stream(engine: &mut Engine, shown: &mut Vec<u32>, frame: usize) {
     if frame > 0 && frame.is_multiple_of(FRAMES) {
         let gone = STEP * (frame / FRAMES) as u32;

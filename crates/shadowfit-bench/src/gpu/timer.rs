@@ -1,10 +1,10 @@
-//! Times of the passes of a frame, waited for.
+//! Blocking measurement of the times of a frame's passes.
 
 use anyhow::{Context, Result};
 use shadowfit_render::{Gpu, GpuTimer};
 
-/// A pass that computes for about a millisecond. A GPU that waits between two frames lowers its clock, and would time the
-/// second one at half of its speed.
+/// A compute pass of about a millisecond. A GPU that idles between two frames lowers its clock, and would run
+/// the second frame at half of its speed.
 const SPIN: &str = "
 @group(0) @binding(0) var<storage, read_write> result: array<f32>;
 
@@ -18,15 +18,15 @@ const SPIN: &str = "
     }
 }
 ";
-/// Workgroups of that pass: several for each part of a large GPU.
+/// Workgroups of that pass: several for each compute unit of a large GPU.
 const SPIN_GROUPS: u32 = 256;
-/// Times that it runs before a frame.
+/// Repetitions of that pass before a frame.
 const SPINS: usize = 2;
 
 /// Times frames, one after the other.
 pub(crate) struct Timer {
     timer: GpuTimer,
-    /// None on software adapters, which have no clock to keep.
+    /// `None` on software adapters, which have no clock to keep up.
     spin: Option<(wgpu::ComputePipeline, wgpu::BindGroup)>,
 }
 
@@ -35,8 +35,8 @@ impl Timer {
         Self { timer: GpuTimer::new(&gpu.device, 1), spin: (!gpu.is_software()).then(|| spin(&gpu.device)) }
     }
 
-    /// Records and submits a frame; the time from the start of its first timed pass to the end of the last one, in
-    /// milliseconds. 0 if none was timed.
+    /// Records and submits a frame. Returns the time from the start of its first timed pass to the end of the
+    /// last one, in milliseconds, or 0 if none was timed.
     pub(crate) fn frame(
         &mut self,
         gpu: &Gpu,
@@ -60,7 +60,7 @@ impl Timer {
     }
 }
 
-/// The pass that computes, and what it binds.
+/// Creates the compute pass and its bind group.
 fn spin(device: &wgpu::Device) -> (wgpu::ComputePipeline, wgpu::BindGroup) {
     let source = wgpu::ShaderSource::Wgsl(SPIN.into());
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor { label: None, source });

@@ -1,5 +1,5 @@
-//! Exact edges: finding the pixels that the maps are not sure of, and their rays, beside the look-up and the rays of all
-//! pixels; and what it takes to move instances.
+//! Exact edges: finding the pixels without agreement and tracing their rays, compared with the look-up alone
+//! and with rays for all pixels. Also the time of moving instances.
 
 use std::time::Instant;
 
@@ -20,10 +20,10 @@ use crate::cuboid::triangles;
 use crate::table::{Table, ms, share};
 use crate::times::median;
 
-/// Heights of the pictures, in pixels, unless the call names one; they are 16:9.
+/// Heights of the pictures, in pixels, unless the command line sets one. The pictures are 16:9.
 const HEIGHTS: [u32; 2] = [720, 1080];
 
-/// Instances, how many of them move in a frame, and for how many frames.
+/// Number of instances, of moving instances per frame, and of frames.
 const INSTANCES: usize = 10_000;
 const MOVING: usize = 1_000;
 const FRAMES: usize = 200;
@@ -31,7 +31,7 @@ const FRAMES: usize = 200;
 /// Pixels along a side of a workgroup, as in the WGSL.
 const SQUARE: u32 = 8;
 
-/// A picture of factors from a depth buffer. FACTOR is the factor of a point that faces the light.
+/// A picture of factors from a depth buffer. FACTOR is the expression for a point that faces the light.
 const SHADER: &str = "
 struct Picture {
     world_from_pixel: mat4x4<f32>,
@@ -42,13 +42,13 @@ struct Picture {
 @group(0) @binding(1) var depths: texture_depth_2d;
 @group(0) @binding(2) var factors: texture_storage_2d<r32float, write>;
 
-// Relative to the eye, in metres, with the depth.
+// Position relative to the eye, in metres, from the depth.
 fn position(pixel: vec2<i32>, depth: f32) -> vec3<f32> {
     let homogeneous = picture.world_from_pixel * vec4<f32>(vec2<f32>(pixel) + 0.5, depth, 1.0);
     return homogeneous.xyz / homogeneous.w;
 }
 
-// Change of the position to the next pixel along an axis, on the side that is nearer in depth.
+// Change of the position to the next pixel along an axis, on the side with the smaller depth difference.
 fn step_along(pixel: vec2<i32>, axis: vec2<i32>, depth: f32, p: vec3<f32>) -> vec3<f32> {
     let next = textureLoad(depths, pixel + axis, 0);
     let previous = textureLoad(depths, max(pixel - axis, vec2<i32>(0)), 0);
@@ -79,12 +79,12 @@ fn step_along(pixel: vec2<i32>, axis: vec2<i32>, depth: f32, p: vec3<f32>) -> ve
 }
 ";
 
-/// Filters, and rays for each pixel that the maps are not sure of.
+/// Filters, and rays for each pixel without agreement.
 const TRACED: [(FilterKind, u32); 3] =
     [(FilterKind::Pcf5x5, 1), (FilterKind::Pcf5x5, Edges::USUAL_SAMPLES), (FilterKind::Pcss, 8)];
 
-/// The look-up, and the rays of a pixel that edges trace: as many as there are PLACES, each from a place on its surface, in
-/// pixels from its centre, to one in the sun's disc, as parts of the distance.
+/// The look-up, and the rays of a pixel: one for each of PLACES. A ray starts at an offset on the pixel's
+/// surface, in pixels from its centre, and points to an offset in the sun's disc, as a share of the distance.
 const LOOK_UP: &str = "shadowfit_factor_at(p, normal, vec2<f32>(id.xy))";
 const RAYS: &str = "
 fn lit(p: vec3<f32>, right: vec3<f32>, down: vec3<f32>, normal: vec3<f32>) -> f32 {
@@ -102,7 +102,8 @@ fn lit(p: vec3<f32>, right: vec3<f32>, down: vec3<f32>, normal: vec3<f32>) -> f3
 }
 ";
 
-/// The places of rays: of a soft sun's on a spiral from the pixel's centre, of others on a rotated grid, or the centre.
+/// Returns the offsets of rays: for a soft sun a spiral in its disc from the pixel's centre, otherwise a
+/// rotated grid in the pixel, or its centre.
 fn places(filter: FilterKind, samples: u32, tangent: f32) -> String {
     let golden = core::f32::consts::PI * (3.0 - 5.0_f32.sqrt());
     let place = |index: u32| {
@@ -165,7 +166,7 @@ impl Pictures {
         }
     }
 
-    /// Takes a camera, and the direction of travel of the light.
+    /// Sets a camera, and the direction of travel of the light.
     fn look(&self, queue: &wgpu::Queue, camera: &PerspectiveCamera, direction: Vec3) {
         let [width, height] = self.size.map(|side| side as f32);
         let clip_from_pixel = Mat4::from_translation(Vec3::new(-1.0, 1.0, 0.0))
@@ -216,7 +217,7 @@ fn pipeline(device: &wgpu::Device, groups: [&wgpu::BindGroupLayout; 2], wgsl: St
     })
 }
 
-/// The casters of a scene as meshes of their own, relative to the eye.
+/// The casters of a scene as separate ray meshes, relative to the eye.
 struct Meshes {
     rays: RayScene,
     ids: Vec<MeshId>,
@@ -245,7 +246,7 @@ impl Meshes {
     }
 }
 
-/// Milliseconds of a frame's passes.
+/// Times of a frame's passes, in milliseconds.
 #[derive(Default)]
 struct Times {
     look_up: Vec<f64>,
@@ -255,7 +256,7 @@ struct Times {
     counts: Vec<EdgeCounts>,
 }
 
-/// Times edges along the walk, in pictures of some heights.
+/// Times exact edges along the walk, in pictures of several heights.
 pub(crate) fn time(bench: &Bench, scene: &BenchScene) -> Result<Table> {
     let mut rows = Vec::new();
     for height in bench.height.map_or(HEIGHTS.to_vec(), |height| vec![height]) {
@@ -270,9 +271,10 @@ pub(crate) fn time(bench: &Bench, scene: &BenchScene) -> Result<Table> {
     Ok(Table {
         title: "Exact edges",
         note: format!(
-            "Compute passes over the depth buffer of the {}, medians along the walk: the look-up for every pixel, PCF 5×5 or for a sun with a radius of 0.27° PCSS; finding the \
-             pixels that the maps are not sure of, with a budget of none; rays for each of these; and as many rays for \
-             every pixel that faces the light. Shares are of the pixels, the ratio is that of both passes to rays for all.",
+            "Compute passes over the depth buffer of the {}, medians along the walk: the look-up for every pixel (PCF \
+             5×5, or PCSS for a sun with a radius of 0.27°), finding the pixels without agreement without a budget, \
+             rays for each of these, and the same number of rays for every pixel that faces the light. Shares are of \
+             the pixels. The ratio is both passes to rays for all.",
             scene.name
         ),
         columns: [
@@ -359,7 +361,7 @@ fn walk(bench: &Bench, scene: &BenchScene, size: [u32; 2], technique: &Technique
     Ok(times)
 }
 
-/// Times frames in which some of many boxes move, on the CPU and until the GPU has them.
+/// Times frames in which some of many boxes move, on the CPU and until the GPU has received them.
 pub(crate) fn time_instances(bench: &Bench) -> Result<Table> {
     let mut rays = RayScene::new(&bench.gpu.device, &bench.gpu.queue)?;
     let mesh = rays.add_mesh(&RayMesh::from_triangles(triangles(&Aabb::new(Vec3::splat(-0.5), Vec3::splat(0.5))))?)?;
@@ -382,7 +384,7 @@ pub(crate) fn time_instances(bench: &Bench) -> Result<Table> {
     Ok(Table {
         title: "Instances that move",
         note: format!(
-            "`RayScene::set_instances` on the CPU, over {FRAMES} frames, and until the GPU has what was uploaded."
+            "`RayScene::set_instances` on the CPU, over {FRAMES} frames, and until the GPU has received the upload."
         ),
         columns: ["boxes", "of them move", "median", "worst", "with the GPU", "uploaded"].map(str::to_owned).to_vec(),
         rows: vec![vec![
@@ -396,7 +398,7 @@ pub(crate) fn time_instances(bench: &Bench) -> Result<Table> {
     })
 }
 
-/// Where a box stands: 100 rows of 100 on a field, each turned.
+/// Returns the place of a box: 100 rows of 100 on a field, each rotated.
 fn place(number: usize) -> Affine3A {
     const ROW: usize = 100;
     let at = Vec3::new((number % ROW) as f32, 0.0, (number / ROW) as f32) * 2.0;

@@ -1,4 +1,4 @@
-//! Culling of more and more boxes against the volumes of four maps.
+//! Culling of growing numbers of boxes against the volumes of four maps.
 
 use std::hint::black_box;
 
@@ -14,18 +14,18 @@ use super::{Extent, Found};
 use crate::table::{Table, ms, share};
 use crate::times::{shortest, timed};
 
-/// Most boxes that are moved.
+/// Greatest number of boxes that are moved.
 const MOVED: usize = 1_000;
 
-/// Times that a call is repeated to find its shortest time.
+/// Repetitions of a call. The shortest time counts.
 const CALLS: usize = 20;
 
-const NOTE: &str = "Against the volumes that hold the casters of `windows-4`, all four at once: `culling::cull` over a \
-                    list, `StaticBoxes::cull` in a hierarchy.";
+const NOTE: &str = "Against the caster volumes of `windows-4`, all four at once: `culling::cull` over a list, \
+    `StaticBoxes::cull` in a hierarchy.";
 
 const COLUMNS: [&str; 7] = ["boxes", "in a map", "list", "hierarchy", "of the list", "hierarchy made", "a box moved"];
 
-/// Times of a list and of a hierarchy.
+/// Measures a list and a hierarchy.
 pub(crate) fn measure(extent: &Extent) -> Result<Found> {
     let mut rows = Vec::new();
     let mut curves = [Curve::thin("list", 0), Curve::new("hierarchy", 1)];
@@ -64,7 +64,7 @@ pub(crate) fn measure(extent: &Extent) -> Result<Found> {
     })
 }
 
-/// Moves boxes from all over the tree by a metre; the time of one, in milliseconds.
+/// Moves boxes from all over the tree by a metre. Returns the time per box, in milliseconds.
 fn move_each(tree: &mut StaticBoxes, town: &Town) -> Result<f64> {
     let step = town.boxes.len().div_ceil(MOVED);
     let moved: Vec<(u32, Aabb)> = (0..).zip(&town.boxes).step_by(step).map(|(i, b)| (i, *b)).collect();
@@ -74,7 +74,7 @@ fn move_each(tree: &mut StaticBoxes, town: &Town) -> Result<f64> {
     Ok(time / moved.len() as f64)
 }
 
-/// What holds the casters of each map in the walk's first frame.
+/// Returns the caster volume of each map in the walk's first frame.
 fn volumes(town: &Town) -> Result<Vec<CasterVolume>> {
     let technique = Technique::default();
     let mut fitter = ShadowFitter::new(&technique);

@@ -1,4 +1,4 @@
-//! Fits of a town of more and more boxes.
+//! Fits of a town with a growing number of boxes.
 
 use anyhow::{Context, Result};
 use shadowfit::{Boxes, ShadowFitter, StaticBoxes, Technique, VisibleDemand};
@@ -10,7 +10,7 @@ use super::{Extent, Found};
 use crate::table::{Table, ms, share};
 use crate::times::{LEAD, Times, timed};
 
-/// A technique, and whether it is told what the frame before showed.
+/// A technique, and whether it receives the visible demand of the previous frame.
 struct Way {
     name: &'static str,
     preset: &'static str,
@@ -24,14 +24,14 @@ const WAYS: [Way; 4] = [
     Way { name: "stable-4", preset: "stable-4", is_told: false },
 ];
 
-const NOTE: &str = "From a list of boxes (`FitInput::receivers` and `casters`) and from a hierarchy (`FitInput::static_boxes`). \
-                    *VisibleDemand* is told what the frame before showed; the others estimate that from the boxes. Worst frames \
-                    are said in medians, too.";
+const NOTE: &str = "From a list of boxes (`FitInput::receivers` and `casters`) and from a hierarchy \
+    (`FitInput::static_boxes`). *VisibleDemand* fits receive the visible demand of the previous frame, the others \
+    estimate it from the boxes. Worst frames are medians, too.";
 
 const COLUMNS: [&str; 8] =
     ["boxes, fit", "list: first", "median", "worst", "hierarchy: first", "median", "worst", "median, of the list's"];
 
-/// Times of fits along the walk, from a list of boxes and from a hierarchy.
+/// Measures fits along the walk, from a list of boxes and from a hierarchy.
 pub(crate) fn measure(extent: &Extent) -> Result<Found> {
     let mut rows = Vec::new();
     let of_list = |(place, way): (usize, &Way)| Curve::thin(format!("{}, list", way.name), place);
@@ -69,7 +69,7 @@ fn cells(times: &Times) -> Vec<String> {
     vec![ms(times.first()), ms(times.median()), worst]
 }
 
-/// Times of the fits along the walk.
+/// Returns the times of the fits along the walk.
 fn walk(world: World<'_>, way: &Way, seen: &[VisibleDemand], extent: &Extent) -> Result<Times> {
     let technique = Technique::preset(way.preset).context("no such preset")?;
     let mut times = Times::default();

@@ -1,4 +1,4 @@
-//! Frames of `SunShadows` with more and more casters, some of which move, on the CPU.
+//! Frames of `SunShadows` with growing numbers of casters, some of which move, on the CPU.
 
 use anyhow::Result;
 use glam::Vec3;
@@ -14,10 +14,10 @@ use crate::open;
 use crate::table::{Table, ms};
 use crate::times::{LEAD, Times, timed};
 
-/// What moves in a frame, and whether the camera walks.
+/// Share of moving casters, and whether the camera walks.
 struct Way {
     name: &'static str,
-    /// Every so many casters one moves; none if 0.
+    /// One of `every` casters moves, or none if 0.
     every: usize,
     walks: bool,
 }
@@ -30,17 +30,17 @@ const WAYS: [Way; 5] = [
     Way { name: "all move", every: 1, walks: true },
 ];
 
-/// Sides of the maps, in texels, and numbers of them, and casters in the town that these are tried in.
+/// Sides of the maps, in texels, numbers of maps, and number of casters in the town of these measurements.
 const SIDES: [u32; 6] = [256, 512, 1024, 2048, 4096, 8192];
 const SIDE: u32 = 2048;
 const NUMBERS: [u32; 8] = [1, 2, 3, 4, 5, 6, 7, 8];
 const NUMBER: u32 = 4;
 const CASTERS: usize = 10_000;
 
-const NOTE: &str = "`windows-4`, told what was seen; the camera walks in all rows but those at rest. `update` is the fit and \
-                    all that follows up to the passes, nothing of which is drawn; the columns after it are without the \
-                    fit: median, worst, and the frame after them in which one static caster more is there. *List* has all \
-                    casters in the frame's list; *hierarchy* has those that stand in a `StaticBoxes` (`SunFrame::static_boxes`).";
+const NOTE: &str = "`windows-4` with visible demand. The camera walks in all rows except those at rest. `update` is \
+    the fit and all further work up to the passes, which are not drawn. The columns after it exclude the fit: median, \
+    worst, and the frame after them, in which a static caster was added. *List* has all casters in the frame's list. \
+    *Hierarchy* has static casters in a `StaticBoxes` (`SunFrame::static_boxes`).";
 
 const COLUMNS: [&str; 9] = [
     "casters, what moves",
@@ -54,16 +54,16 @@ const COLUMNS: [&str; 9] = [
     "one more",
 ];
 
-/// Casters that a scene of today's engines has, beside the powers of ten.
+/// Number of casters in a scene of current engines, in addition to the powers of ten.
 const TYPICAL: usize = 30_000;
 
-/// A chimney in view, which comes at the end.
+/// A chimney in view, added at the end.
 const NEW: Aabb = Aabb::new(Vec3::new(0.6, 8.0, -10.0), Vec3::new(2.4, 9.0, -8.0));
 
-/// Height to which what moves bobs, in metres.
+/// Amplitude of moving casters, in metres.
 const BOB: f32 = 0.5;
 
-/// Times of the two halves of `SunShadows::update`, and of the second one where a static caster comes.
+/// Times of the two halves of `SunShadows::update`, and of the second half after a static caster was added.
 struct Halves {
     fit: Times,
     prepare: Times,
@@ -77,7 +77,7 @@ impl Halves {
     }
 }
 
-/// Times by the number of casters.
+/// Measures times by the number of casters.
 pub(crate) fn measure(extent: &Extent) -> Result<Found> {
     let gpu = open(&extent.adapter)?;
     let technique = Technique::default();
@@ -113,14 +113,14 @@ pub(crate) fn measure(extent: &Extent) -> Result<Found> {
     })
 }
 
-/// Numbers of casters.
+/// Returns the numbers of casters.
 fn sizes(extent: &Extent) -> Vec<usize> {
     let mut sizes: Vec<usize> = extent.sizes().chain([TYPICAL]).filter(|size| *size <= extent.largest).collect();
     sizes.sort_unstable();
     sizes
 }
 
-/// Times by the number of maps and by their sides.
+/// Measures times by the number of maps and by their sides.
 pub(crate) fn measure_maps(extent: &Extent) -> Result<Found> {
     let gpu = open(&extent.adapter)?;
     let town = Town::new(CASTERS.min(extent.largest));
@@ -148,7 +148,7 @@ pub(crate) fn measure_maps(extent: &Extent) -> Result<Found> {
     }
     let columns = ["windows", "fit", "worst", "the rest of `update`"].map(str::to_owned).to_vec();
     let casters = grouped(town.boxes.len());
-    let note = format!("`windows-4` and others, told what was seen, in a hierarchy of {casters} casters.");
+    let note = format!("`windows-4` and others with visible demand, in a hierarchy of {casters} casters.");
     Ok(Found {
         table: Table { title: "Number and size of the maps", note, columns, rows },
         pictures: vec![Picture {
@@ -160,7 +160,7 @@ pub(crate) fn measure_maps(extent: &Extent) -> Result<Found> {
     })
 }
 
-/// What walks share.
+/// Input that walks share.
 #[derive(Clone, Copy)]
 struct Run<'a> {
     gpu: &'a Gpu,
@@ -170,8 +170,8 @@ struct Run<'a> {
 }
 
 impl Run<'_> {
-    /// Frames along the walk; in one after the last a static caster comes. What stands is in the list of each frame or
-    /// in a hierarchy.
+    /// Runs the frames of the walk, and one more frame after a static caster was added. Static casters are in
+    /// each frame's list or in a hierarchy.
     fn walk(&self, technique: &Technique, way: &Way, is_tree: bool) -> Result<Halves> {
         let mut halves = Halves { fit: Times::default(), prepare: Times::default(), one_more: f64::INFINITY };
         let last = LEAD + self.extent.frames;
@@ -202,9 +202,9 @@ impl Run<'_> {
     }
 }
 
-/// The casters as an engine hands them over.
+/// The casters as an engine passes them.
 struct Handed {
-    /// The list of a frame, at rest and now, and which of it moves.
+    /// Each frame's list, at rest and now, and which of its boxes move.
     at_rest: Vec<Aabb>,
     boxes: Vec<Aabb>,
     moves: Vec<bool>,
@@ -226,7 +226,7 @@ impl Handed {
         Ok(Self { moves: vec![true; moving.len()], boxes: moving.clone(), at_rest: moving, static_boxes })
     }
 
-    /// A static caster comes.
+    /// Adds a static caster.
     fn add(&mut self, aabb: Aabb) -> Result<()> {
         match &mut self.static_boxes {
             Some(tree) => drop(tree.insert(aabb)?),
@@ -235,7 +235,7 @@ impl Handed {
         Ok(())
     }
 
-    /// Moves what moves.
+    /// Moves the moving casters.
     fn bob(&mut self, frame: usize) {
         let by = Vec3::Y * (BOB * (frame as f32 * 0.1).sin());
         for ((aabb, at_rest), _) in
@@ -245,7 +245,7 @@ impl Handed {
         }
     }
 
-    /// Times of the two halves of a frame.
+    /// Returns the times of the two halves of a frame.
     fn time(&self, gpu: &Gpu, sun: &mut SunShadows, place: usize) -> Result<[f64; 2]> {
         let views = [Town::camera(place).frustum()?];
         let (boxes, static_boxes) = (Boxes::world(&self.boxes), self.static_boxes.as_ref());
@@ -261,7 +261,7 @@ impl Handed {
         let fitted = fitted?;
         let (prepared, prepare) = timed(|| sun.prepare(&gpu.queue, &frame, &fitted));
         prepared?;
-        // What was written waits in memory of the queue until something is submitted.
+        // The queue keeps written data in memory until a submission.
         gpu.queue.submit([]);
         gpu.device.poll(wgpu::PollType::wait_indefinitely())?;
         Ok([fit, prepare])

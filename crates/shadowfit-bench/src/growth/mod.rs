@@ -1,8 +1,9 @@
-//! `shadowfit-bench growth`: how costs grow with the world: fits, culling and frames of `SunShadows` in a town of more and
-//! more boxes.
+//! `shadowfit-bench growth`: growth of costs with the world: fits, culling and frames of `SunShadows` in a
+//! town with a growing number of boxes.
 //!
-//! Times are of one core and of the CPU alone. Where a graphics device is needed nothing is drawn with it, and a software
-//! adapter will do. A time is the shortest of some rounds, so that other work on the machine counts little.
+//! Times are of one CPU core. Some parts need a graphics device, but draw nothing, so a software adapter
+//! suffices. A time is the shortest of several rounds, which reduces the influence of other work on the
+//! machine.
 
 mod culling;
 mod fits;
@@ -23,21 +24,21 @@ use crate::open;
 use crate::page::{self, Section};
 use crate::table::Table;
 
-/// Where pictures lie, seen from the page that shows them.
-const PICTURES: &str = "images/benchmarks";
+/// Folder of the pictures, relative to the page that shows them.
+const PICTURES: &str = "../images/benchmarks";
 
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// Replace the tables in docs/BENCHMARKS.md, and write the curves beside it
+    /// Write the tables to docs/figures/growth.md, and the curves beside it
     #[arg(long)]
     page: bool,
-    /// Where the tables are written, as Markdown
+    /// Markdown file for the tables
     #[arg(long)]
     out: Option<PathBuf>,
-    /// Folder that the curves are written into, as SVG
+    /// Folder for the curves, as SVG
     #[arg(long)]
     pictures: Option<PathBuf>,
-    /// A few frames of small worlds, to see that all of it works
+    /// Run a few frames of small worlds, to check that everything works
     #[arg(long)]
     quick: bool,
     #[command(flatten)]
@@ -47,21 +48,21 @@ pub(crate) struct Args {
     only: Vec<Part>,
 }
 
-/// What is measured.
+/// Part of the benchmark.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Part {
     /// Fits of four techniques
     Fits,
     /// Culling against four maps
     Culling,
-    /// Frames of `SunShadows`, by the number of casters and by what moves
+    /// Frames of `SunShadows`, by the number of casters and by the share that moves
     Frames,
-    /// The same by the number of maps and by their sides
+    /// Frames of `SunShadows`, by the number of maps and by their sides
     Maps,
 }
 
 impl Part {
-    /// Whether the part takes a graphics device, which owns the maps.
+    /// Returns whether the part needs a graphics device, which owns the maps.
     fn takes_device(self) -> bool {
         matches!(self, Self::Frames | Self::Maps)
     }
@@ -76,15 +77,15 @@ impl Part {
     }
 }
 
-/// How much is measured.
+/// Extent of the measurements.
 struct Extent {
     /// Frames of a walk that count.
     frames: usize,
-    /// Times that each walk is repeated.
+    /// Repetitions of each walk.
     rounds: usize,
     /// Largest world, in boxes.
     largest: usize,
-    /// The device that owns the maps. Nothing is drawn with it.
+    /// Adapter of the device that owns the maps. The device draws nothing.
     adapter: AdapterOptions,
 }
 
@@ -96,20 +97,20 @@ impl Extent {
         Self { frames: 40, rounds: 3, largest: 1_000_000, adapter }
     }
 
-    /// Numbers of boxes, a tenth of each other.
+    /// Returns the numbers of boxes, each ten times the previous one.
     fn sizes(&self) -> impl Iterator<Item = usize> {
         let largest = self.largest;
         (2..).map(|power| 10_usize.pow(power)).take_while(move |size| *size <= largest)
     }
 }
 
-/// What a part found.
+/// Result of a part.
 struct Found {
     table: Table,
     pictures: Vec<Picture>,
 }
 
-/// Measures, and prints and writes the tables and curves.
+/// Measures, then prints and writes the tables and curves.
 pub(crate) fn run(args: &Args) -> Result<()> {
     let extent = Extent::new(args.quick, args.adapter.clone());
     let usual = args.page.then(page::curves);
@@ -119,7 +120,7 @@ pub(crate) fn run(args: &Args) -> Result<()> {
     let wants = |part: &Part| args.only.is_empty() || args.only.contains(part);
     let parts = || Part::value_variants().iter().copied().filter(wants);
     if parts().any(Part::takes_device) {
-        // A machine without the adapter is refused before anything is measured.
+        // Fails before any measurement if the machine does not have the adapter.
         open(&extent.adapter)?;
     }
     let mut text = String::new();

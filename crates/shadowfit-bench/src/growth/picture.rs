@@ -12,39 +12,39 @@ use shadowfit_report::page::plotting::{
 use shadowfit_report::readable;
 use shadowfit_study::write_whole;
 
-/// Size, in pixels, and how much of its width the legend takes.
+/// Size, in pixels, and width of the legend.
 const SIZE: (u32, u32) = (860, 400);
 const LEGEND: u32 = 270;
-/// Room around the curves, as a factor.
+/// Margin around the curves, as a factor.
 const ROOM: f64 = 1.3;
 
-/// A line through what was measured.
+/// A line through measured points.
 #[derive(Clone)]
 pub(crate) struct Curve {
     name: String,
-    /// Place of its colour, and whether it is drawn as one to compare with: thin, with hollow marks.
+    /// Index of its colour, and whether it is drawn thin, with hollow marks, for comparison.
     colour: usize,
     is_thin: bool,
     points: Vec<(f64, f64)>,
 }
 
-/// Curves that answer one question.
+/// Curves in one picture.
 pub(crate) struct Picture {
-    /// Name of the file, without its ending.
+    /// Name of the file, without its extension.
     pub(crate) file: &'static str,
     pub(crate) title: &'static str,
-    /// What the axes count.
+    /// Labels of the axes.
     pub(crate) axes: [&'static str; 2],
     pub(crate) curves: Vec<Curve>,
 }
 
 impl Curve {
-    /// A line in the colour of a place.
+    /// Creates a line in the colour of an index.
     pub(crate) fn new(name: impl Into<String>, colour: usize) -> Self {
         Self { name: name.into(), colour, is_thin: false, points: Vec::new() }
     }
 
-    /// A thin line with hollow marks in the colour of a place, to compare others with.
+    /// Creates a thin line with hollow marks in the colour of an index, for comparison with others.
     pub(crate) fn thin(name: impl Into<String>, colour: usize) -> Self {
         Self { is_thin: true, ..Self::new(name, colour) }
     }
@@ -54,7 +54,7 @@ impl Curve {
         self.points.push((count as f64, value));
     }
 
-    /// Styles of the line and of its marks.
+    /// Returns styles of the line and of its marks.
     fn styles(&self) -> [ShapeStyle; 2] {
         let colour = COLOURS[self.colour % COLOURS.len()];
         if self.is_thin {
@@ -121,7 +121,7 @@ impl Picture {
         Ok(())
     }
 
-    /// From the least to the greatest of the points' values, with some room.
+    /// Returns the range of the points' values, with a margin.
     fn range(&self, value: impl Fn(&(f64, f64)) -> f64) -> core::ops::Range<f64> {
         let values = self.curves.iter().flat_map(|curve| &curve.points).map(value);
         let [low, high] = values.fold([f64::INFINITY, 0.0], |[low, high], v| [low.min(v), high.max(v)]);
@@ -131,7 +131,7 @@ impl Picture {
 
 type Drawn = Result<(), DrawingAreaErrorKind<std::io::Error>>;
 
-/// A number with its thousands set apart.
+/// Returns a number with separated thousands.
 pub(crate) fn grouped(number: usize) -> String {
     let digits = number.to_string();
     let (first, rest) = digits.split_at((digits.len() - 1) % 3 + 1);

@@ -8,30 +8,31 @@ use shadowfit_truth::Tracer;
 
 use crate::cuboid::triangles;
 
-/// From the middle of a house to that of the next one, width of a house, and least and greatest height, in metres.
+/// Distance between the middles of neighbouring houses, width of a house, and least and greatest height, in
+/// metres.
 const STEP: f32 = 3.0;
 const WIDTH: f32 = 2.0;
 const HEIGHTS: [f32; 2] = [2.0, 8.0];
 /// Thickness of the ground, in metres.
 const GROUND: f32 = 0.1;
 
-/// Where shadows and the view end, in metres.
+/// Far distance of shadows and view, in metres.
 const FAR: f32 = 400.0;
-/// Height of the eye, in metres; its way and turn from frame to frame, in metres and radians.
+/// Height of the eye, in metres. Movement and turn per frame, in metres and radians.
 const EYE: f64 = 1.7;
 const WAY: f64 = 0.1;
 const TURN: f32 = 0.02;
 
 /// A ground and the houses on it, in a square around the origin.
 pub(crate) struct Town {
-    /// World space, in metres; the ground comes first.
+    /// Boxes in world space, in metres. The ground comes first.
     pub(crate) boxes: Vec<Aabb>,
 }
 
 impl Town {
-    /// A town of so many boxes.
+    /// Builds a town of `count` boxes.
     pub(crate) fn new(count: usize) -> Self {
-        // Even, so that a street and no house is in the middle.
+        // Even, so that the middle is a street and not a house.
         let side = ((count as f64).sqrt().ceil() as usize).next_multiple_of(2);
         let half = side as f32 * STEP * 0.5;
         let ground = Aabb::new(Vec3::new(-half, -GROUND, -half), Vec3::new(half, 0.0, half));
@@ -45,12 +46,12 @@ impl Town {
         Self { boxes: [ground].into_iter().chain((1..count).map(house)).collect() }
     }
 
-    /// Direction of travel of the sun's light.
+    /// Returns the direction of travel of the sun's light.
     pub(crate) fn direction() -> Vec3 {
         Vec3::new(0.4, -0.8, 0.3).normalize()
     }
 
-    /// The camera of a frame: along a street, and turning.
+    /// Returns the camera of a frame, which moves along a street and turns.
     pub(crate) fn camera(frame: usize) -> PerspectiveCamera {
         let turn = frame as f32 * TURN;
         PerspectiveCamera {
@@ -64,7 +65,7 @@ impl Town {
         }
     }
 
-    /// What each of the first frames shows, by rays.
+    /// Returns the visible demand of each of the first frames, by rays.
     pub(crate) fn seen(&self, frames: usize, technique: &Technique) -> Result<Vec<VisibleDemand>> {
         let in_reach = self.boxes.iter().filter(|aabb| aabb.min.length().min(aabb.max.length()) < FAR * 1.5);
         let tracer = Tracer::new(self.boxes.iter().take(1).chain(in_reach.skip(1)).flat_map(triangles));
@@ -73,17 +74,17 @@ impl Town {
     }
 }
 
-/// How boxes are handed over.
+/// Form in which boxes are passed to a fit.
 #[derive(Clone, Copy)]
 pub(crate) enum World<'a> {
-    /// In each frame.
+    /// As a list in each frame.
     List(Boxes<'a>),
-    /// Once.
+    /// As a hierarchy, built once.
     Tree(&'a StaticBoxes),
 }
 
 impl<'a> World<'a> {
-    /// The input of a fit.
+    /// Returns the input of a fit.
     pub(crate) fn input(self, views: &'a [ViewFrustum]) -> FitInput<'a> {
         let input = FitInput::new(views, Town::direction());
         match self {

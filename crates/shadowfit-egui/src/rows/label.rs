@@ -1,15 +1,15 @@
-//! What stands at both ends of a row: its label, and the button that resets it.
+//! The two ends of a row: its label, and its reset button.
 
 use egui::{Align, Label, Layout, Response, RichText, Sense, Ui, Vec2};
 
 use crate::widgets::{Icon, icon_button};
 
-/// Width of the labels, in points: the longest of them fits.
+/// Width of the labels, in points. The longest one fits.
 const LABEL_WIDTH: f32 = 122.0;
-/// Width kept free for the reset button, in points, so that controls do not jump.
+/// Width reserved for the reset button, in points, so that controls do not jump.
 pub(super) const RESET_WIDTH: f32 = 24.0;
 
-/// A label that can be clicked, as wide as all others, with a small word of context behind it.
+/// Shows a clickable label of fixed width, followed by a small word of context.
 pub(super) fn label(ui: &mut Ui, text: &str, context: &str) -> Response {
     let size = Vec2::new(LABEL_WIDTH, ui.spacing().interact_size.y);
     let layout = Layout::left_to_right(Align::Center);

@@ -7,15 +7,15 @@ use shadowfit_params::Parameter;
 
 use crate::accessibility::rename;
 
-/// Width of the closed list, in points: its triangle alone.
+/// Width of the closed list, in points, which shows only its triangle.
 pub(super) const LIST_WIDTH: f32 = 38.0;
 
-/// Whether a parameter is a width or a height of a map: those are the ones in whole texels.
+/// Returns whether a parameter is a width or a height of a map. Only these are in whole texels.
 pub(super) fn is_side(parameter: &Parameter, decimals: usize) -> bool {
     parameter.unit == "texels" && decimals == 0
 }
 
-/// A list of the powers of two within a range; returns the one that was chosen.
+/// Shows a list of the powers of two within a range. Returns the chosen one.
 pub(super) fn list(ui: &mut Ui, label: &str, value: f64, range: RangeInclusive<f64>) -> Option<f64> {
     let mut chosen = None;
     let list = ComboBox::from_id_salt("powers of two").width(LIST_WIDTH).selected_text("").show_ui(ui, |ui| {

@@ -1,4 +1,4 @@
-//! The colours of both themes, by what they are for.
+//! The colours of both themes, by their use.
 
 use egui::{Color32, Ui};
 
@@ -11,37 +11,37 @@ pub(crate) struct Palette {
     pub(crate) strong: Color32,
     /// Units, captions and hints.
     pub(crate) weak: Color32,
-    /// Behind everything.
+    /// Background.
     pub(crate) panel: Color32,
     /// Cards, menus and windows.
     pub(crate) card: Color32,
-    /// Fields for text, and the ground of bars and plots.
+    /// Text fields, and the background of bars and plots.
     pub(crate) field: Color32,
     /// Buttons at rest.
     pub(crate) control: Color32,
     /// Outlines of buttons at rest.
     pub(crate) control_line: Color32,
-    /// Buttons that the pointer is on.
+    /// Hovered buttons.
     pub(crate) hovered: Color32,
-    /// Buttons that are held or focused.
+    /// Pressed or focused buttons.
     pub(crate) pressed: Color32,
     /// Outlines of cards, and lines between sections.
     pub(crate) border: Color32,
-    /// What asks for attention, as text or line: messages, rings of focus, side A.
+    /// Text or lines that ask for attention: messages, focus rings, side A.
     pub(crate) accent: Color32,
-    /// What is chosen, and the main button of a card.
+    /// Selected items, and the main button of a card.
     pub(crate) accent_fill: Color32,
     /// Text on [`Self::accent_fill`] and [`Self::success_fill`].
     pub(crate) on_accent: Color32,
-    /// Side B of a comparison, as text or line.
+    /// Text or lines of side B of a comparison.
     pub(crate) second: Color32,
-    /// What went well, as text or line.
+    /// Text or lines of success.
     pub(crate) success: Color32,
-    /// The button that cures.
+    /// The button that applies a cure.
     pub(crate) success_fill: Color32,
-    /// What is wrong with the picture or the scene, as text or line.
+    /// Text or lines that warn about the picture or the scene.
     pub(crate) warning: Color32,
-    /// What failed.
+    /// Failures.
     pub(crate) error: Color32,
 }
 
@@ -90,13 +90,13 @@ impl Palette {
         error: Color32::from_rgb(178, 28, 28),
     };
 
-    /// The colours that go with the style of a part of the interface.
+    /// Returns the colours for the style of `ui`.
     pub(crate) fn of(ui: &Ui) -> &'static Self {
         if ui.visuals().dark_mode { &Self::DARK } else { &Self::LIGHT }
     }
 }
 
-/// Contrast of two opaque colours, 1..=21, by the Web Content Accessibility Guidelines 2.1.
+/// Returns the contrast of two opaque colours, 1..=21, by the Web Content Accessibility Guidelines 2.1.
 pub(crate) fn contrast(a: Color32, b: Color32) -> f32 {
     let luminance = |colour: Color32| {
         let [r, g, b, _] = egui::Rgba::from(colour).to_array();
@@ -106,7 +106,7 @@ pub(crate) fn contrast(a: Color32, b: Color32) -> f32 {
     (a.max(b) + 0.05) / (a.min(b) + 0.05)
 }
 
-/// A colour of lines, darkened on a light ground until it stands out from it.
+/// Returns a line colour, darkened on a light background until its contrast is sufficient.
 pub(crate) fn readable(color: Color32, ground: Color32) -> Color32 {
     let mut darker = color;
     while contrast(darker, ground) < SHAPE_CONTRAST && contrast(ground, Color32::WHITE) < 2.0 {
@@ -116,14 +116,14 @@ pub(crate) fn readable(color: Color32, ground: Color32) -> Color32 {
     darker
 }
 
-/// Contrast that level AA of the guidelines asks of lines and shapes that carry a meaning.
+/// Contrast that level AA of the guidelines requires of meaningful lines and shapes.
 const SHAPE_CONTRAST: f32 = 3.0;
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// What level AA asks of text.
+    /// Contrast that level AA requires of text.
     const TEXT: f32 = 4.5;
 
     #[test]

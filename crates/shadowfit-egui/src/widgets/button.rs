@@ -1,4 +1,4 @@
-//! Buttons that egui has not: with an icon alone, with a key under the name, joined to a bar.
+//! Buttons that egui lacks: with only an icon, and with a key below the name.
 
 use egui::{
     Align2, Button, Color32, Response, RichText, Role, Sense, Stroke, StrokeKind, TextStyle, Ui, Vec2, WidgetInfo,
@@ -8,10 +8,11 @@ use crate::accessibility::rename;
 use crate::icon::{Icon, paint_icon};
 use crate::theme::Palette;
 
-/// Width and height of a button that shows an icon alone, in points.
+/// Width and height of an icon button, in points.
 const ICON_BUTTON: f32 = 24.0;
 
-/// A button that shows an icon, has a name for screen readers, and help: for bars beside the panel that should look like it.
+/// Shows a button with an icon, a name for screen readers, and help. Hosts can use it for bars that should
+/// look like the panel.
 pub fn icon_button(ui: &mut Ui, icon: Icon, name: &str, help: &str) -> Response {
     let size = Vec2::new(ICON_BUTTON, at_least(ui, ICON_BUTTON));
     let (rect, response) = ui.allocate_exact_size(size, Sense::click());
@@ -27,12 +28,12 @@ pub fn icon_button(ui: &mut Ui, icon: Icon, name: &str, help: &str) -> Response 
     response.on_hover_text(help).on_disabled_hover_text(help)
 }
 
-/// A height in points, or the least that can be pressed where that is more.
+/// Returns a height in points, raised to the least height of controls.
 pub(crate) fn at_least(ui: &Ui, height: f32) -> f32 {
     height.max(ui.spacing().interact_size.y)
 }
 
-/// A button that shows an icon before its name.
+/// Shows a button with an icon before its name.
 pub fn named_icon_button(ui: &mut Ui, icon: Icon, name: &str, help: &str) -> Response {
     let text =
         ui.painter().layout_no_wrap(name.to_owned(), TextStyle::Button.resolve(ui.style()), Color32::PLACEHOLDER);
@@ -51,7 +52,7 @@ pub fn named_icon_button(ui: &mut Ui, icon: Icon, name: &str, help: &str) -> Res
     response.on_hover_text(help)
 }
 
-/// The main button of a card, over its whole width.
+/// Shows the main button of a card, over its whole width.
 pub(crate) fn main_button(ui: &mut Ui, text: &str, key: &str, fill: Color32) -> Response {
     let on_fill = Palette::of(ui).on_accent;
     let name = RichText::new(text).color(on_fill);
@@ -63,7 +64,7 @@ pub(crate) fn main_button(ui: &mut Ui, text: &str, key: &str, fill: Color32) -> 
     response
 }
 
-/// A button with its key under its name.
+/// A button with its key below its name.
 pub(crate) struct KeyButton<'a> {
     pub(crate) name: &'a str,
     pub(crate) accessible_name: &'a str,
@@ -72,7 +73,7 @@ pub(crate) struct KeyButton<'a> {
 }
 
 impl KeyButton<'_> {
-    /// As wide as there is room.
+    /// Shows the button in the available width.
     pub(crate) fn show(&self, ui: &mut Ui) -> Response {
         let (rect, response) = ui.allocate_exact_size(Vec2::new(ui.available_width(), 42.0), Sense::click());
         response.widget_info(|| {

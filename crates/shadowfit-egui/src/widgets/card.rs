@@ -1,10 +1,10 @@
-//! A frame around what belongs together.
+//! A frame around a group of widgets.
 
 use egui::{Color32, CornerRadius, Frame, InnerResponse, Margin, Stroke, Ui};
 
 use crate::theme::CARD_RADIUS;
 
-/// A card as wide as there is room, with an outline of `accent` where it asks for attention.
+/// Shows a card in the available width. With `accent`, its outline has that colour.
 pub(crate) fn card<R>(ui: &mut Ui, accent: Option<Color32>, contents: impl FnOnce(&mut Ui) -> R) -> InnerResponse<R> {
     let border = ui.visuals().widgets.noninteractive.bg_stroke;
     let stroke = accent.map_or(border, |accent| Stroke::new(1.0, accent));

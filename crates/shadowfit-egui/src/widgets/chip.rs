@@ -4,15 +4,15 @@ use egui::{
     Align2, Color32, CornerRadius, Rect, Response, Role, Sense, Stroke, StrokeKind, TextStyle, Ui, Vec2, WidgetInfo,
 };
 
-/// Width and height of a square of a colour, in points.
+/// Width and height of a colour square, in points.
 const SWATCH: f32 = 10.0;
 
-/// A colour of sRGB bytes.
+/// Converts a colour from sRGB bytes.
 pub(crate) fn color([r, g, b]: [u8; 3]) -> Color32 {
     Color32::from_rgb(r, g, b)
 }
 
-/// A square of a colour, with a thin line around it, so that it is seen on any ground.
+/// Shows a colour square with a thin outline, which makes it visible on any background.
 pub(crate) fn swatch(ui: &mut Ui, color: Color32) -> Response {
     let (rect, response) = ui.allocate_exact_size(Vec2::splat(SWATCH), Sense::hover());
     if ui.is_rect_visible(rect) {
@@ -26,7 +26,7 @@ fn paint_swatch(ui: &Ui, rect: Rect, color: Color32) {
     ui.painter().rect(rect, CornerRadius::same(2), color, line, StrokeKind::Inside);
 }
 
-/// A line of [`color_entry`]s, which wraps.
+/// Shows a line of [`color_entry`]s, which wraps.
 pub(crate) fn color_line(ui: &mut Ui, entries: impl FnOnce(&mut Ui)) {
     ui.scope(|ui| {
         ui.spacing_mut().item_spacing = Vec2::new(12.0, 3.0);
@@ -35,7 +35,7 @@ pub(crate) fn color_line(ui: &mut Ui, entries: impl FnOnce(&mut Ui)) {
     });
 }
 
-/// A colour, what it stands for, and a value: one widget, so that a line of them wraps.
+/// Shows a colour, its meaning, and a value, as one widget, so that a line of them wraps.
 pub(crate) fn color_entry(ui: &mut Ui, fill: Color32, name: &str, value: Option<&str>) -> Response {
     /// Distances between the square, the name and the value, in points.
     const GAP: f32 = 5.0;
@@ -61,7 +61,7 @@ pub(crate) fn color_entry(ui: &mut Ui, fill: Color32, name: &str, value: Option<
     response
 }
 
-/// A name with values in columns of `width` at its right, and with the square of a colour before it: one widget.
+/// A widget with an optional colour square, a name, and values in columns of `width` at the right.
 pub(crate) struct ValueRow<'a> {
     pub(crate) fill: Option<Color32>,
     pub(crate) name: &'a str,
@@ -70,7 +70,7 @@ pub(crate) struct ValueRow<'a> {
 }
 
 impl ValueRow<'_> {
-    /// As wide as there is room. A value that is not known is a dash.
+    /// Shows the row in the available width. Unknown values are dashes.
     pub(crate) fn show(&self, ui: &mut Ui) -> Response {
         let small = TextStyle::Small.resolve(ui.style());
         let height = ui.text_style_height(&TextStyle::Small) + 3.0;
@@ -97,7 +97,7 @@ impl ValueRow<'_> {
     }
 }
 
-/// A short text on a patch of colour.
+/// Shows a short text on a patch of colour.
 pub(crate) fn badge(ui: &mut Ui, text: &str, fill: Color32, on_fill: Color32, name: &str) -> Response {
     let (rect, response) = ui.allocate_exact_size(Vec2::new(22.0, 16.0), Sense::hover());
     response.widget_info(|| WidgetInfo::labeled(Role::Label, true, name));

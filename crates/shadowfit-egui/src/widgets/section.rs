@@ -1,4 +1,4 @@
-//! Headings: of sections that fold, and small ones within cards.
+//! Headings of folding sections, and small headings within cards.
 
 use egui::collapsing_header::{CollapsingState, paint_default_icon};
 use egui::{Align2, Rect, Response, RichText, Role, Sense, Stroke, StrokeKind, TextStyle, Ui, Vec2, WidgetInfo};
@@ -11,18 +11,18 @@ const HEIGHT: f32 = 27.0;
 /// Width of the triangle before the heading, in points.
 const INDENT: f32 = 18.0;
 
-/// A section that folds, with what it says while folded at the right of its heading.
+/// A folding section, with a summary at the right of its heading.
 pub(crate) struct Section<'a> {
     pub(crate) title: &'a str,
     pub(crate) help: &'a str,
-    /// A few words on what is in it.
+    /// Summary in a few words.
     pub(crate) summary: &'a str,
-    /// Whether it is open until a person folds it.
+    /// Whether it is open initially.
     pub(crate) is_open: bool,
 }
 
 impl Section<'_> {
-    /// Heading and, while it is open, contents. Whether it is open stays in egui's memory by the title.
+    /// Shows the heading and, if open, the contents. egui's memory stores the open state by the title.
     pub(crate) fn show(&self, ui: &mut Ui, contents: impl FnOnce(&mut Ui)) {
         let id = ui.make_persistent_id(("section", self.title));
         let mut state = CollapsingState::load_with_default_open(ui.ctx(), id, self.is_open);
@@ -67,12 +67,12 @@ impl Section<'_> {
     }
 }
 
-/// The heading of a card.
+/// Shows the heading of a card.
 pub(crate) fn title(ui: &mut Ui, text: &str) -> Response {
     ui.label(RichText::new(text).strong())
 }
 
-/// A small, quiet line: a heading within a section, or a hint.
+/// Shows a small line in weak colour: a heading within a section, or a hint.
 pub(crate) fn caption(ui: &mut Ui, text: &str) -> Response {
     ui.add(egui::Label::new(RichText::new(text).small().weak()).wrap())
 }

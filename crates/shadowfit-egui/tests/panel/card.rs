@@ -43,11 +43,11 @@ fn card(is_technique: bool, shown: Option<usize>) -> Card<'static> {
     }
 }
 
-/// A scene with a card in a real session.
+/// Returns a host with a card in a real session.
 pub(crate) fn session() -> Host {
     let figures = [("Wrong pixels, as its source", "0.32%"), ("Wrong pixels, modern maps", "0.03%")];
     let figures = figures.map(|(name, value)| CardFigure { name: name.to_owned(), value: value.to_owned() });
-    // A host of a test lives as long as the test.
+    // A test's host lives as long as the test.
     let figures: &'static [CardFigure] = Box::leak(Box::new(figures));
     Host { card: Some(Card { figures, ..card(false, Some(0)) }), ..states::session() }
 }
@@ -81,7 +81,7 @@ fn options_variants_and_measuring_are_asked_for() {
     harness.get_by_label("8-bit, plain").click();
     harness.run();
     assert_eq!(harness.state().commands.last(), Some(&Command::SetSampleOption { index: 0, value: 1.0 }));
-    find(&harness, Role::ComboBox, "What it shows").expect("a list").click();
+    find(&harness, Role::ComboBox, "Variant").expect("a list").click();
     harness.run();
     harness.get_by_label(VARIANTS[1].label).click();
     harness.run();

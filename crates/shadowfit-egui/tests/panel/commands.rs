@@ -1,4 +1,4 @@
-//! Every command that the panel can ask for, and the parts that a host leaves out.
+//! Every command of the panel, and the parts that a host leaves out.
 
 use egui::ThemePreference;
 use egui::accesskit::Role;
@@ -10,7 +10,7 @@ use shadowfit_egui::{Artefact, Changes, Command, Panel, Part, Toggle, Tune};
 use crate::host::{Host, harness, harness_with, press, wait_for_the_tooltip};
 use crate::states::{busy, changed, session, tune_done};
 
-/// What the panel asked for since the last call.
+/// Returns the panel's commands since the last call.
 fn asked(harness: &mut Harness<'_, Host>) -> Vec<Command> {
     std::mem::take(&mut harness.state_mut().commands)
 }
@@ -174,7 +174,7 @@ fn every_plot_can_be_chosen() {
     let mut harness = harness_with(session(), "Plots");
     for name in [
         "Wrong pixels, A | B",
-        "Mean error",
+        "Light error",
         "Crawl",
         "Pixels per texel",
         "Time of passes",

@@ -20,9 +20,8 @@ use crate::host::{
     type_into, unset_box, wait_for_the_tooltip,
 };
 
-/// Settings of cascades under which every row of the table is shown and has an effect, but the one of the other
-/// choice of splits, λ or the manual ones, of the other choice of maps, blend or overlap, and of the other measure of
-/// softness.
+/// Returns settings of cascades with which every row is shown and active, except the rows of other choices: λ
+/// or the manual splits, blend or overlap, and the other measure of softness.
 pub(crate) fn everything(splits: SplitScheme) -> Settings {
     let mut settings = Settings::default();
     let technique = &mut settings.technique;
@@ -31,14 +30,14 @@ pub(crate) fn everything(splits: SplitScheme) -> Settings {
     (technique.fit.max_distance, technique.fit.border) = (100.0, Some(3.0));
     technique.fit.casters = CasterPolicy::Extend;
     technique.edges = Edges::Traced { samples: 4 };
-    // Their softness and the steps of their depths count.
+    // So that softness and depth steps have an effect.
     (technique.filter, technique.format) = (FilterKind::Vogel16, MapFormat::Depth16Unorm);
     settings.light.animate = true;
     settings.view.inset_depths = Some([0.1, 0.9]);
     settings
 }
 
-/// Three of them that show all rows together, each of them active in one at least.
+/// Returns three settings that together show all rows, each row active in at least one.
 pub(crate) fn all_rows() -> [Settings; 3] {
     let manual = SplitScheme::Manual([5.0, 10.0, 20.0, 40.0, 80.0, 160.0, 320.0]);
     let mut settings = [SplitScheme::Practical(0.5), manual, SplitScheme::FromHistogram].map(everything);
@@ -50,7 +49,7 @@ pub(crate) fn all_rows() -> [Settings; 3] {
     settings
 }
 
-/// The cascades of settings that have some.
+/// Returns the cascades of settings.
 fn cascades(settings: &Settings) -> Cascades {
     let Maps::Cascades(cascades) = settings.technique.maps else { panic!("they have cascades") };
     cascades
@@ -370,13 +369,13 @@ fn a_search_shows_the_rows_that_it_finds_under_their_groups_and_nothing_else() {
     harness.get_by_role_and_label(Role::Button, "Clear the search").click();
     harness.run();
     assert!(is_shown(&harness, "fit.kind") && !is_shown(&harness, "bias.slope"));
-    // What tools alone have is found too.
+    // The search also finds settings of the tools.
     search(&mut harness, "sun light.an");
     assert!(is_shown(&harness, "light.animate") && !is_shown(&harness, "light.elevation"));
     harness.get_by_role_and_label(Role::Button, "Clear the search").click();
     harness.run();
     search(&mut harness, "nonsense");
-    harness.get_by_label("No setting that has an effect now has this in its name or help.");
+    harness.get_by_label("No active setting has these words in its name or help.");
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! The dialog of the check of the graphics device.
+//! The dialog of the device check.
 
 use egui::accesskit::Role;
 use egui::{Theme, Vec2};
@@ -10,7 +10,7 @@ use shadowfit_params::device_check::{CheckReport, CheckRow, CheckState};
 use crate::host::builder;
 use crate::layout::assert_no_text_is_clipped;
 
-/// A report, and what its dialog asked for.
+/// A report, and the commands of its dialog.
 type Dialog = (CheckReport, Vec<Command>);
 
 fn report(states: [CheckState; 3]) -> CheckReport {
@@ -34,7 +34,7 @@ fn dialog(size: [f32; 2], states: [CheckState; 3]) -> Harness<'static, Dialog> {
     harness
 }
 
-/// Presses a button, and returns the command that the dialog asked for.
+/// Presses a button, and returns the commands of the dialog.
 fn pressed(harness: &mut Harness<'static, Dialog>, label: &str) -> Vec<Command> {
     harness.get_by_role_and_label(Role::Button, label).click();
     harness.run();

@@ -16,7 +16,7 @@ fn figures_that_were_not_measured_are_dashes() {
     harness.state_mut().figures.frame_ms = Some(5.0);
     harness.state_mut().figures.maps[0] = Some(MapFigures::default());
     harness.run();
-    // Distances and waste of the map, and all that it costs, are not known.
+    // View depths and waste of the map, and all of its costs, are unknown.
     assert_eq!(harness.query_all_by_label("—").count(), 6 + 6);
     harness.get_by_label("1\u{a0}234\u{a0}567");
     harness.get_by_label("5.00 ms, 200 Hz");

@@ -1,7 +1,7 @@
-//! Golden pictures of the panel, drawn by the software adapter whatever GPU is present.
+//! Golden pictures of the panel, drawn by the software adapter on any machine.
 //!
-//! A missing golden fails. `SHADOWFIT_UPDATE_GOLDENS=1` writes them anew, as `cargo xtask golden` does. On a failure
-//! `NAME.actual.png` and `NAME.diff.png` lie beside `NAME.png`.
+//! A missing golden fails. `SHADOWFIT_UPDATE_GOLDENS=1` or `cargo xtask golden` writes them. A failure leaves
+//! `NAME.actual.png` and `NAME.diff.png` beside `NAME.png`.
 
 use std::path::{Path, PathBuf};
 
@@ -16,7 +16,7 @@ use crate::host::{Host, builder};
 use crate::renderer::SoftwareRenderer;
 use crate::states::{busy, play, session};
 
-/// Most bytes that a golden may have.
+/// Greatest size of a golden, in bytes.
 const MAX_BYTES: u64 = 128 * 1024;
 
 /// Height of the pictures, in points.
@@ -25,13 +25,13 @@ const HEIGHT: f32 = 900.0;
 /// Every golden.
 const NAMES: [&str; 6] = ["dark", "light", "dark-busy", "light-plots", "dark-twice", "dark-sample"];
 
-/// The distance of colours, weighted for the eye, from which on a pixel counts as different; and how many may be: the
-/// same driver draws the same bits, another version of it may round the edge of a glyph the other way. A control that
-/// moves by a point changes many more.
+/// Least colour distance, weighted for the eye, of a different pixel, and the greatest number of different
+/// pixels. The same driver draws the same bits, but another version may round the edges of glyphs
+/// differently. A control that moves by a point changes many more pixels.
 const DIFFERENT: f32 = 0.6;
 const DIFFERENT_PIXELS: usize = 60;
 
-/// A harness that draws.
+/// Makes a harness that draws.
 fn drawn(host: Host, theme: Theme) -> Harness<'static, Host> {
     drawn_at(host, theme, HEIGHT, 1.0)
 }
@@ -106,7 +106,7 @@ fn the_golden_comparison_sees_what_is_missing_and_what_moved() {
     assert!(compare(&other, "there").is_err());
 }
 
-/// Whether this run writes the goldens.
+/// Returns whether this run writes the goldens.
 fn updates() -> bool {
     std::env::var_os("SHADOWFIT_UPDATE_GOLDENS").is_some_and(|value| value != "0")
 }
@@ -119,7 +119,7 @@ fn options(folder: &Path) -> SnapshotOptions {
     SnapshotOptions::new().output_path(folder).threshold(DIFFERENT).max_failed_pixels(DIFFERENT_PIXELS)
 }
 
-/// Saves a picture as small as it gets, without its opacity.
+/// Saves a picture with the best compression, without its opacity.
 fn save(picture: &RgbaImage, path: &Path) {
     let file = std::fs::File::create(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
     let encoder = PngEncoder::new_with_quality(file, CompressionType::Best, FilterType::Adaptive);
@@ -136,7 +136,7 @@ fn check(name: &str, harness: &mut Harness<'_, Host>) {
         std::fs::create_dir_all(folder()).expect("the folder of the goldens");
         save(&picture, &folder().join(name).with_extension("png"));
     } else if let Err(reason) = try_image_snapshot_options(&picture, name, &options(&folder())) {
-        // Named as the other goldens of the workspace name theirs; absent where the picture could not be written.
+        // Named like all other goldens of the workspace. Absent if the picture could not be written.
         let _ = std::fs::rename(folder().join(format!("{name}.new.png")), folder().join(format!("{name}.actual.png")));
         panic!("{reason}\n`cargo xtask golden` writes the goldens; look at the pictures before committing them");
     }

@@ -1,4 +1,4 @@
-//! A host of the panel, and what finds and moves its widgets.
+//! A host of the panel, with functions that find and move its widgets.
 
 use egui::accesskit::Role;
 use egui::epaint::{ClippedShape, Shape};
@@ -14,13 +14,13 @@ use shadowfit_params::figures::Figures;
 use shadowfit_params::tool::Settings;
 use shadowfit_params::{Kind, Number, Parameter, Value, parameter};
 
-/// Higher than all that the panel holds, so that nothing is scrolled out of view.
+/// Higher than the whole panel, so that nothing is scrolled out of view.
 pub(crate) const HEIGHT: f32 = 4600.0;
 
 /// The parameter that has buttons, one for each map.
 pub(crate) const INSET_MAP: &str = "view.inset_map";
 
-/// An artefact that is shown, as a host keeps it.
+/// A shown artefact, as a host stores it.
 #[derive(Clone, Default)]
 pub(crate) struct Shown {
     pub(crate) artefact: Option<Artefact>,
@@ -37,7 +37,7 @@ pub(crate) struct Host {
     pub(crate) notes: Vec<String>,
     pub(crate) message: Option<&'static str>,
     pub(crate) shown: Shown,
-    /// Technique B and whether it is edited, where two are compared.
+    /// Technique B and whether it is edited, if two are compared.
     pub(crate) compare: Option<(Technique, bool)>,
     pub(crate) tune: Tune<'static>,
     pub(crate) card: Option<Card<'static>>,
@@ -45,17 +45,17 @@ pub(crate) struct Host {
     pub(crate) presets: Vec<UserPreset>,
     pub(crate) help: bool,
     pub(crate) commands: Vec<Command>,
-    /// Width of the panel, where it is not its own.
+    /// Width of the panel, if not the default.
     pub(crate) width: Option<f32>,
-    /// What the panel takes, margins included.
+    /// Area of the panel, margins included.
     pub(crate) panel_rect: Option<Rect>,
-    /// Right end of what the panel holds.
+    /// Right end of the panel's contents.
     pub(crate) content_right: f32,
 }
 
 impl Host {
     pub(crate) fn show(&mut self, ui: &mut egui::Ui) {
-        // The harness leaves a margin around its interface, which a window has not.
+        // The harness adds a margin around its interface. A window has none.
         let window = ui.ctx().content_rect();
         let ui = &mut ui.new_child(egui::UiBuilder::new().max_rect(window));
         ui.set_clip_rect(window);
@@ -88,14 +88,14 @@ impl Host {
     }
 }
 
-/// A harness of these sizes with the theme of the panel.
+/// Makes a harness of this size and scale with the theme of the panel.
 pub(crate) fn builder<State>(size: Vec2, theme: Theme, scale: f32) -> HarnessBuilder<State> {
     HarnessBuilder::default()
         .with_size(size)
         .with_theme(theme)
         .with_pixels_per_point(scale)
         .with_context_setup(move |ctx| apply_theme(ctx, ThemePreference::from(theme)))
-        // Fast enough for double clicks, and steps enough for the sections to open.
+        // Short enough for double clicks, with enough steps for the sections to open.
         .with_step_dt(0.05)
         .with_max_steps(100)
 }
@@ -118,14 +118,14 @@ pub(crate) fn open_sections(harness: &mut Harness<'_, Host>) {
     }
 }
 
-/// With every section open.
+/// Makes a harness with every section open.
 pub(crate) fn open_harness(host: Host) -> Harness<'static, Host> {
     let mut harness = harness(host);
     open_sections(&mut harness);
     harness
 }
 
-/// With one section open.
+/// Makes a harness with one section open.
 pub(crate) fn harness_with(host: Host, section: &str) -> Harness<'static, Host> {
     let mut harness = harness(host);
     harness.get_by_role_and_label(Role::DisclosureTriangle, section).click();
@@ -133,7 +133,7 @@ pub(crate) fn harness_with(host: Host, section: &str) -> Harness<'static, Host> 
     harness
 }
 
-/// The control of a parameter, which carries its label; for the map of the inset its first button.
+/// Returns the control of a parameter, which carries its label; for the map of the inset its first button.
 pub(crate) fn query_control<'a>(harness: &'a Harness<'_, Host>, parameter: &Parameter) -> Option<Node<'a>> {
     let (role, label) = match &parameter.kind {
         Kind::Number(_) if parameter.id == INSET_MAP => (Role::RadioButton, inset_button(1)),
@@ -149,7 +149,7 @@ pub(crate) fn query_control<'a>(harness: &'a Harness<'_, Host>, parameter: &Para
     find(harness, role, &label)
 }
 
-/// The only widget of a role and name, if there is one.
+/// Returns the only widget with a role and name, if there is one.
 pub(crate) fn find<'a>(harness: &'a Harness<'_, Host>, role: Role, label: &str) -> Option<Node<'a>> {
     let mut found =
         harness.query_all_by_role(role).filter(|node| node.accesskit_node().label().as_deref() == Some(label));
@@ -166,13 +166,13 @@ pub(crate) fn inset_button(map: usize) -> String {
     format!("Show map {map} in the inset")
 }
 
-/// Least and greatest value of a number, whether it has to be there or not, and its value.
+/// Returns least and greatest value of a number, optional or not, and its value.
 pub(crate) fn number(parameter: &Parameter, settings: &Settings) -> Option<(f64, f64, f64)> {
     let Kind::Number(Number { min, max, .. }) = parameter.kind else { return None };
     parameter.number(settings).map(|value| (min, max, value))
 }
 
-/// The check box of a number that need not be there.
+/// Returns the check box of an optional number.
 pub(crate) fn unset_box<'a>(harness: &'a Harness<'_, Host>, parameter: &Parameter) -> Node<'a> {
     let Kind::Number(Number { unset: Some(unset), .. }) = parameter.kind else { panic!("{}", parameter.id) };
     find(harness, Role::CheckBox, &format!("{}: {}", parameter.label, unset.option.label)).expect(parameter.id)
@@ -201,7 +201,7 @@ pub(crate) fn wait_for_the_tooltip<State>(harness: &mut Harness<'_, State>) {
     harness.run_steps(30);
 }
 
-/// Every text that is drawn, with its place.
+/// Returns every drawn text with its place.
 pub(crate) fn texts<State>(harness: &Harness<'_, State>) -> Vec<(Rect, String)> {
     let mut texts = Vec::new();
     for ClippedShape { shape, .. } in &harness.output().shapes {
@@ -210,7 +210,7 @@ pub(crate) fn texts<State>(harness: &Harness<'_, State>) -> Vec<(Rect, String)> 
     texts
 }
 
-/// The place of each text of a shape, what it says, and whether it was shortened.
+/// Visits the texts of a shape: place, text, and whether it was shortened.
 pub(crate) fn visit_texts(shape: &Shape, found: &mut impl FnMut(Rect, &str, bool)) {
     match shape {
         Shape::Vec(shapes) => shapes.iter().for_each(|shape| visit_texts(shape, found)),

@@ -1,4 +1,4 @@
-//! Nothing is cut off, in any state, theme and scale.
+//! Nothing is clipped, in any state, theme and scale.
 
 use egui::accesskit::Role;
 use egui::epaint::ClippedShape;
@@ -14,11 +14,11 @@ use crate::controls::{all_rows, everything};
 use crate::host::{HEIGHT, Host, builder, find, harness_of, open_harness, open_sections, query_control, visit_texts};
 use crate::states::{busy, session, tune_done, wide_judged, widest};
 
-/// How far text may reach beyond what clips it, in points: the rounding of its place.
+/// Distance that text may extend beyond its clip rectangle, in points, for the rounding of its place.
 const SLACK: f32 = 1.0;
 
-/// Every text that is drawn is drawn whole: none reaches beyond its clip rectangle, and none was shortened. Texts that
-/// are scrolled out of view are left out.
+/// Asserts that every text is drawn whole: none extends beyond its clip rectangle, and none was shortened.
+/// Texts that are scrolled out of view are skipped.
 pub(crate) fn assert_no_text_is_clipped<State>(harness: &Harness<'_, State>, state: &str) {
     let mut texts = 0;
     for ClippedShape { clip_rect, shape, .. } in &harness.output().shapes {
@@ -39,7 +39,8 @@ pub(crate) fn assert_no_text_is_clipped<State>(harness: &Harness<'_, State>, sta
 fn set_widest(settings: &mut Settings) {
     for parameter in PARAMETERS {
         let value = match &parameter.kind {
-            // Not its greatest, which the width has, and which is as wide.
+            // Not the greatest value, since the width has that value, which would mean square. This one is as
+            // wide.
             Kind::Number(Number { unset: Some(_), max, .. }) => Value::Number(0.999 * max),
             Kind::Number(number) => Value::Number(number.max),
             Kind::Choice(_) if parameter.id == "splits.scheme" => continue,
@@ -57,7 +58,7 @@ fn set_widest(settings: &mut Settings) {
 fn everything_fits_the_panel_width() {
     for settings in all_rows() {
         let mut host = Host { settings, ..widest() };
-        // The controls of A, whose rows are those of the settings.
+        // The controls of A, whose rows belong to the settings.
         host.compare = None;
         // The widest values, all changed so that the reset buttons show.
         set_widest(&mut host.settings);
@@ -92,7 +93,7 @@ fn assert_fits(harness: &Harness<'_, Host>) {
     }
 }
 
-/// The panel in every state that has a look of its own.
+/// Returns the panel in every state with its own look.
 fn all_states() -> Vec<(&'static str, Host)> {
     let mut states = vec![("new", Host::default()), ("session", session()), ("busy", busy()), ("widest", widest())];
     for artefact in Artefact::ALL {
@@ -115,7 +116,7 @@ fn all_states() -> Vec<(&'static str, Host)> {
         at_most: 1,
         start_error: f32::NAN,
         best_error: f32::NAN,
-        what: "Getting ready: a device of its own, and the scene",
+        what: "Preparing a separate device and the scene",
     };
     let worse = Tune::Done { before: wide_judged(), after: wide_judged(), changes: &[], is_applied: false };
     for tune in [begun, running, tune_done(true), worse, Tune::Failed("The picture has no pixel that faces the light.")]
@@ -134,7 +135,7 @@ const LOOKS: [(Theme, f32); 3] = [(Theme::Dark, 1.0), (Theme::Light, 1.0), (Them
 /// Asserts that a state of the panel clips no text in a theme and scale.
 fn assert_shows_all((name, mut host): (&str, Host), (theme, scale): (Theme, f32)) {
     host.settings = everything(SplitScheme::Practical(0.5));
-    // The longest names of saved techniques are shortened in the menu's button.
+    // The menu's button shortens the longest names of saved techniques.
     let mut harness = harness_of(host, theme, scale, HEIGHT);
     open_sections(&mut harness);
     assert_no_text_is_clipped(&harness, &format!("{name}, {theme:?}, scale {scale}"));

@@ -1,4 +1,5 @@
-//! What a host shows beside the panel: the bar of views, legends, the card of a pixel, the table of the keys.
+//! Widgets that a host shows beside the panel: the bar of views, legends, the card of a pixel, the table of
+//! keys.
 
 use egui::accesskit::Role;
 use egui::{Pos2, Rect, Theme, Vec2};
@@ -72,7 +73,7 @@ fn legends_explain_the_colours_of_their_views() {
         (ViewMode::PixelsPerTexel, ErrorMarks::Off, &["Colours of 1/8 to 8 pixels per texel"]),
         (ViewMode::Maps, ErrorMarks::Off, &["map 1", "map 4"]),
         (ViewMode::Demand, ErrorMarks::Off, &["map 1", "Colours of 1/8 to 8 pixels per texel"]),
-        (ViewMode::Updates, ErrorMarks::Off, &["kept", "drawn anew", "moves"]),
+        (ViewMode::Updates, ErrorMarks::Off, &["kept", "redrawn", "moving"]),
         (ViewMode::Traced, ErrorMarks::Off, &["traced", "left to the filter"]),
     ] {
         let view = ViewSettings { mode, marks, ..ViewSettings::default() };

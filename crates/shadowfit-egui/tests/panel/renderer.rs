@@ -1,13 +1,13 @@
-//! Draws a harness with the software adapter, whatever GPU is present.
+//! Draws a harness with the software adapter, on any machine.
 //!
-//! `egui_kittest` has a renderer of its own, but with it comes OpenGL for the whole workspace.
+//! The renderer of `egui_kittest` would add OpenGL to the whole workspace.
 
 use egui::{Context, FullOutput, TexturesDelta};
 use egui_kittest::TestRenderer;
 use egui_wgpu::{Renderer, RendererOptions, ScreenDescriptor};
 use image::RgbaImage;
 
-/// What pictures are drawn to: egui blends encoded colours.
+/// Format of the pictures. egui blends encoded colours.
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
 /// Bytes of a pixel.
@@ -21,8 +21,8 @@ pub(crate) struct SoftwareRenderer {
 }
 
 impl SoftwareRenderer {
-    /// Tests that the machine cannot run are left out by name before they start, so that here the adapter's absence is
-    /// a failure.
+    /// Makes the renderer. Tests that the machine cannot run are skipped by name before they start, so a
+    /// missing adapter is a failure here.
     pub(crate) fn new() -> Self {
         let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
         let adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::all()));

@@ -1,4 +1,4 @@
-//! What a panel looks like while it is used: figures and states of a real session, and the widest ones.
+//! Figures and states of a real session, and the widest ones.
 
 use egui::accesskit::Role;
 use egui_kittest::Harness;
@@ -20,7 +20,7 @@ pub(crate) fn judged() -> JudgedFigures {
         false_light: 0.09,
         hole: 0.02,
         edge: 1.21,
-        mean_error: 0.64,
+        light_error: 0.64,
         uncovered: 0.0,
         pixels_per_texel: Some([0.82, 1.94, 3.27]),
         crawl: Some(0.11),
@@ -29,7 +29,7 @@ pub(crate) fn judged() -> JudgedFigures {
     }
 }
 
-/// The same with a better technique.
+/// The same picture with a better technique.
 pub(crate) fn judged_better() -> JudgedFigures {
     JudgedFigures {
         wrong: 0.74,
@@ -37,7 +37,7 @@ pub(crate) fn judged_better() -> JudgedFigures {
         false_light: 0.12,
         hole: 0.0,
         edge: 0.62,
-        mean_error: 0.21,
+        light_error: 0.21,
         pixels_per_texel: Some([0.44, 1.02, 1.6]),
         ..judged()
     }
@@ -92,17 +92,17 @@ pub(crate) fn session() -> Host {
     }
 }
 
-/// The changes of a search or a cure.
+/// Returns the changes of a search or a cure.
 pub(crate) fn changed() -> Vec<String> {
     vec!["Constant bias: 0 → 1 texel".into(), "Receiver plane: 0 → 2.5 texels".into(), "Filter: Point → PCF 5×5".into()]
 }
 
-/// The search has ended.
+/// Returns a finished search.
 pub(crate) fn tune_done(is_applied: bool) -> Tune<'static> {
     Tune::Done { before: judged(), after: judged_better(), changes: changed().leak(), is_applied }
 }
 
-/// An artefact is shown, two techniques are compared, and the search has ended.
+/// Returns a host that shows an artefact, compares two techniques, and has finished a search.
 pub(crate) fn busy() -> Host {
     let mut host = session();
     host.message = Some("Saved shadowfit-004.png");
@@ -118,7 +118,7 @@ pub(crate) fn busy() -> Host {
     host
 }
 
-/// A map with the widest figures of a real scene.
+/// Returns a map with the widest figures of a real scene.
 pub(crate) fn wide_map() -> MapFigures {
     MapFigures {
         view_depths: Some([888.8, 8888.8]),
@@ -137,7 +137,7 @@ pub(crate) fn wide_map() -> MapFigures {
     }
 }
 
-/// A judgement with the widest figures.
+/// Returns a judgement with the widest figures.
 pub(crate) fn wide_judged() -> JudgedFigures {
     JudgedFigures {
         wrong: 88.8,
@@ -145,7 +145,7 @@ pub(crate) fn wide_judged() -> JudgedFigures {
         false_light: 22.2,
         hole: 22.2,
         edge: 22.2,
-        mean_error: 88.8,
+        light_error: 88.8,
         uncovered: 88.8,
         pixels_per_texel: Some([888.8, 888.8, 888.8]),
         crawl: Some(88.8),
@@ -154,7 +154,7 @@ pub(crate) fn wide_judged() -> JudgedFigures {
     }
 }
 
-/// The widest content in every part.
+/// Returns a host with the widest content in every part.
 pub(crate) fn widest() -> Host {
     let mut host = busy();
     host.shown.artefact = Some(Artefact::ClippingHole);
@@ -180,10 +180,10 @@ pub(crate) fn widest() -> Host {
     host
 }
 
-/// Opens the plots, and lets half a minute pass in which the figures change.
+/// Opens the plots, and changes the figures for half a minute.
 pub(crate) fn play(harness: &mut Harness<'_, Host>) {
     for section in ["Fit", "Figures"] {
-        // What is above stays folded.
+        // The sections above stay folded.
         assert!(harness.query_by_role_and_label(Role::DisclosureTriangle, section).is_some());
     }
     harness.get_by_role_and_label(Role::DisclosureTriangle, "Plots").click();

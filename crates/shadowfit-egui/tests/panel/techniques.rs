@@ -1,4 +1,4 @@
-//! Techniques by name, and two of them beside each other.
+//! Techniques by name, and a comparison of two.
 
 use egui::Key;
 use egui::accesskit::Role;
@@ -25,7 +25,7 @@ fn choose(harness: &mut Harness<'_, Host>, name: &str, summary: &str) {
     press(harness, &option);
 }
 
-/// What the closed menu of techniques says.
+/// Returns the text of the closed menu of techniques.
 fn title(harness: &Harness<'_, Host>) -> String {
     harness.get_by_role_and_label(Role::ComboBox, "Technique").value().expect("it has a text")
 }

@@ -1,17 +1,17 @@
-//! Colours with a meaning: of the classes of wrong pixels, and of pixels per texel.
+//! Colours of the classes of wrong pixels, and of pixels per texel.
 
 /// Colours of the classes of wrong pixels, as sRGB bytes: false shadow, false light, hole, edge.
 ///
-/// Colours of M. Okabe and K. Ito ("Color universal design", 2008), which people with any one kind of
-/// colour blindness tell apart.
+/// Colours of M. Okabe and K. Ito ("Color universal design", 2008), which people with any one kind of colour
+/// blindness can tell apart.
 pub const ERROR_COLORS: [[u8; 3]; 4] = [[213, 94, 0], [86, 180, 233], [204, 121, 167], [240, 228, 66]];
 
-/// Colours of pixels that face the light and of which the maps were not sure, as sRGB bytes: those that were traced, and
-/// those that were left to the filter. Of the same set.
+/// Colours of facing pixels that the maps could not decide, as sRGB bytes: traced pixels, and pixels left to
+/// the filter. From the same set.
 pub const EDGE_COLORS: [[u8; 3]; 2] = [[230, 159, 0], [86, 180, 233]];
 
-/// Pixels per texel and their colours, as sRGB bytes, an octave from one to the next: blue where texels are
-/// finer than pixels, red where they can be seen, nearly white at one pixel per texel.
+/// Pixels per texel and their colours, as sRGB bytes, one octave apart: blue where texels are finer than
+/// pixels, red where they are visible, nearly white at one pixel per texel.
 ///
 /// The diverging scale "`RdBu`" with seven classes of C. Brewer (colorbrewer2.org), reversed.
 pub const PIXELS_PER_TEXEL_COLORS: [(f32, [u8; 3]); 7] = [
@@ -24,12 +24,12 @@ pub const PIXELS_PER_TEXEL_COLORS: [(f32, [u8; 3]); 7] = [
     (8.0, [178, 24, 43]),
 ];
 
-/// Colour of a number of pixels per texel, as sRGB bytes: between those of
-/// [`PIXELS_PER_TEXEL_COLORS`] along the logarithm, and that of the nearer end beyond them.
+/// Returns the colour of a number of pixels per texel, as sRGB bytes, interpolated between
+/// [`PIXELS_PER_TEXEL_COLORS`] along the logarithm and clamped to both ends.
 pub fn pixels_per_texel_color(pixels_per_texel: f32) -> [u8; 3] {
     let scale = PIXELS_PER_TEXEL_COLORS;
     let last = scale.len() - 1;
-    // Not a number counts as the least.
+    // NaN counts as the least value.
     let place = (libm::log2f(pixels_per_texel.max(scale[0].0) / scale[0].0)).min(last as f32);
     let below = (place as usize).min(last - 1);
     let share = place - below as f32;

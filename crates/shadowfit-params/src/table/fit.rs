@@ -1,4 +1,4 @@
-//! The rows of the fit of each map.
+//! The rows for the fit of each map.
 
 use shadowfit::settings::{CasterPolicy, FitKind, RectangleKind, Shape};
 use shadowfit::{Cascades, Maps, SingleMap};
@@ -8,11 +8,11 @@ use crate::field::{Field, choice, code, field};
 use crate::tool::Settings;
 use crate::{ChoiceOption, Group, Kind, Number, Parameter, Unset, Value};
 
-/// Widest border, in texels: wider than the reach of filters but for the softest, and less than a quarter of the smallest
-/// map that the table allows.
+/// Widest border, in texels: wider than the reach of all but the softest filters, and less than a quarter of
+/// the smallest map that the table allows.
 const WIDEST_BORDER: f64 = 32.0;
 
-/// The meaning of the options of the kind: the rule of cascades or of one map, or windows.
+/// Fit of each option of `fit.kind`; `None` for windows.
 const KINDS: [Option<FitKind>; 6] = [
     Some(FitKind::Focused),
     None,
@@ -22,49 +22,50 @@ const KINDS: [Option<FitKind>; 6] = [
     Some(FitKind::XnaSample),
 ];
 
-/// In the order that they are shown.
+/// Rows in display order.
 pub(super) const ROWS: &[Parameter] = &[
     Parameter {
         id: "fit.kind",
         group: Group::Fit,
         label: "Fit",
         unit: "",
-        help: "The rule that decides where a shadow map looks. Windows are sharp and still, focused maps as sharp, the sphere \
-           coarser and as still. The frustum box is the plainest; the XNA sample's rule loses casters outside the view.",
+        help: "The rule that fits a shadow map. Windows are sharp, and their shadow edges do not crawl. Focused maps \
+           are as sharp, but not as stable. The sphere is as stable, but coarser. The frustum box is the simplest. The \
+           XNA sample's rule loses casters outside the view.",
         kind: Kind::Choice(&[
             ChoiceOption {
                 id: "focused",
                 label: "Focused on the scene",
-                help: "The least rectangle around what the camera sees of the scene's boxes: the finest texels.",
+                help: "The smallest rectangle around the visible parts of the scene's boxes: the finest texels.",
             },
             ChoiceOption {
                 id: "windows",
                 label: "Windows",
-                help: "Rectangles on a grid of texels that is fixed to the world, each where it helps most of what is \
-                       visible. They demand no splits: sharp, and still when the camera moves or turns.",
+                help: "Rectangles on a texel grid that is fixed to the world, each placed where it improves the most \
+                       visible pixels. Sharp without splits, and edges do not crawl when the camera moves or turns.",
             },
             ChoiceOption {
                 id: "oriented",
                 label: "Oriented rectangle",
-                help: "The least rectangle around the camera frustum as the light sees it, turned with it.",
+                help: "The smallest rectangle around the camera frustum as seen from the light. It turns with the \
+                       camera.",
             },
             ChoiceOption {
                 id: "sphere",
                 label: "Stable sphere",
-                help: "The sphere around the camera frustum on a fixed grid of texels: coarser, but no edge crawls \
-                       when the camera moves or turns.",
+                help: "The sphere around the camera frustum, on a fixed texel grid: coarser, but no edge crawls when \
+                       the camera moves or turns.",
             },
             ChoiceOption {
                 id: "frustum_aabb",
                 label: "Frustum box",
-                help: "The box of the camera frustum in the light's axes, whether there is anything to see in it or \
-                       only air.",
+                help: "The box of the whole camera frustum along the light's axes, including its empty parts.",
             },
             ChoiceOption {
                 id: "xna_sample",
                 label: "XNA sample",
-                help: "The box of Microsoft's XNA Shadow Mapping sample (2008), with twice the depth that is \
-                       needed. It loses casters outside the view.",
+                help: "The box of Microsoft's XNA Shadow Mapping sample (2008), with twice the necessary depth range. \
+                       It loses casters outside the view.",
             },
         ]),
         field: Field {
@@ -90,19 +91,19 @@ pub(super) const ROWS: &[Parameter] = &[
         group: Group::Fit,
         label: "Rectangle",
         unit: "",
-        help: "How the oriented and the focused fit lay their rectangle around what they cover. The least area has the \
-           finest texels; a square has equal ones both ways.",
+        help: "Shape and rotation of the rectangle that the oriented and the focused fit place around the covered \
+           area. The smallest area gives the finest texels; a square makes them equally fine in both directions.",
         kind: Kind::Choice(&[
-            ChoiceOption { id: "minimum_area", label: "Least area", help: "Turned so that its area is least." },
+            ChoiceOption { id: "minimum_area", label: "Least area", help: "Turned to the smallest area." },
             ChoiceOption {
                 id: "minimum_square",
                 label: "Least square",
-                help: "The least square: texels are as wide as they are high.",
+                help: "The smallest square: texels are as wide as they are high.",
             },
             ChoiceOption {
                 id: "axis_aligned",
                 label: "Not turned",
-                help: "Along the light's own axes: larger, but it turns only when the light does.",
+                help: "Along the light's own axes: larger, but it turns only with the light.",
             },
         ]),
         field: choice!(technique.maps, Maps::Cascades(Cascades { shape: Shape { rectangle: part, .. }, .. })
@@ -110,7 +111,7 @@ pub(super) const ROWS: &[Parameter] = &[
             in [RectangleKind::MinimumArea, RectangleKind::MinimumSquare, RectangleKind::AxisAligned]),
         inert: |s| {
             (!matches!(kind(s), Some(FitKind::Oriented | FitKind::Focused)))
-                .then_some("Only the oriented and the focused fit can turn; choose one of them.")
+                .then_some("Only the oriented and the focused fit can turn their rectangle; choose one of them.")
         },
     },
     Parameter {
@@ -118,7 +119,7 @@ pub(super) const ROWS: &[Parameter] = &[
         group: Group::Fit,
         label: "Longest texels",
         unit: "×",
-        help: "How many times as long as wide a texel may be. Long texels blur edges more one way than the other; a low \
+        help: "Greatest ratio of a texel's length to its width. Long texels blur edges more in one direction; a low \
            limit makes blur even and texels coarser.",
         kind: Kind::Number(Number {
             min: 1.0,
@@ -127,7 +128,7 @@ pub(super) const ROWS: &[Parameter] = &[
             logarithmic: true,
             decimals: 1,
             unset: Some(Unset {
-                option: ChoiceOption { id: "none", label: "no limit", help: "Texels may be of any shape." },
+                option: ChoiceOption { id: "none", label: "no limit", help: "Texels may have any shape." },
                 initial: 2.0,
             }),
         }),
@@ -144,11 +145,11 @@ pub(super) const ROWS: &[Parameter] = &[
         },
         inert: |s| match kind(s) {
             Some(FitKind::XnaSample) => {
-                Some("The XNA sample's fit has no limit to its texels' shape; choose another fit.")
+                Some("The XNA sample's fit does not limit the shape of texels; choose another fit.")
             }
-            None => Some("The texels of windows have a shape that the light's height sets; choose another fit."),
+            None => Some("The light's elevation sets the texel shape of windows; choose another fit."),
             Some(FitKind::Sphere) if s.technique.fit.resolution.x == s.technique.fit.resolution.y => {
-                Some("The texels of the stable sphere are as long as wide already; choose another fit.")
+                Some("The texels of the stable sphere are already square; choose another fit.")
             }
             _ => None,
         },
@@ -158,8 +159,8 @@ pub(super) const ROWS: &[Parameter] = &[
         group: Group::Fit,
         label: "Least texel",
         unit: "m",
-        help: "Maps have no finer texels than this; 0 is no limit. It keeps edges alike where the camera comes close, and a \
-           map that may be coarser covers more and moves less. Soft filters set a limit of their own.",
+        help: "Lower limit of the texel size; 0 means no limit. It keeps edges uniform when the camera comes close. A \
+           coarser map also covers more, and so moves less. Soft filters set their own limit.",
         kind: Kind::Number(Number { min: 0.0, max: 10.0, step: 0.001, logarithmic: true, decimals: 4, unset: None }),
         field: field!(technique.fit.least_texel),
         inert: |s| {
@@ -172,8 +173,8 @@ pub(super) const ROWS: &[Parameter] = &[
         group: Group::Fit,
         label: "Shadow distance",
         unit: "m",
-        help: "Shadows end at this distance from the camera. Lower it to spend the texels near the camera, which \
-           sharpens shadows there; raise it when shadows vanish too close.",
+        help: "Distance from the camera at which shadows end. Lower it to sharpen shadows near the camera; raise it if \
+           shadows end too close.",
         kind: Kind::Number(Number {
             min: 1.0,
             max: 100_000.0,
@@ -184,7 +185,7 @@ pub(super) const ROWS: &[Parameter] = &[
                 option: ChoiceOption {
                     id: "far_plane",
                     label: "far plane",
-                    help: "Shadows reach as far as the camera sees.",
+                    help: "Shadows reach the camera's far plane.",
                 },
                 initial: 100.0,
             }),
@@ -205,40 +206,41 @@ pub(super) const ROWS: &[Parameter] = &[
         group: Group::Fit,
         label: "Casters",
         unit: "",
-        help: "What places the map's near plane, before which casters are lost. The objects themselves place it best; the \
-           extension needs no knowledge of them.",
+        help: "Place of the map's near plane, which faces the light. Casters between the light and this plane are \
+           lost, except with Depth clamp. By objects is best; By extension needs no list of the objects.",
         kind: Kind::Choice(&[
             ChoiceOption {
                 id: "list",
                 label: "By objects",
-                help: "At the first object that can throw a shadow into view: none is lost, no depth is wasted.",
+                help: "At the first object, as seen from the light, that can cast a shadow into view: no caster is \
+                       lost and no depth range is wasted.",
             },
             ChoiceOption {
                 id: "extend",
                 label: "By extension",
-                help: "The near plane moves toward the light by the caster extension.",
+                help: "At the covered area, moved toward the light by the caster extension.",
             },
             ChoiceOption {
                 id: "scene_bounds",
                 label: "By scene box",
-                help: "At the one box around all objects: none is lost, but depth is wasted under its empty corners.",
+                help: "At the one box around all objects: no caster is lost, but its empty corners waste depth range.",
             },
             ChoiceOption {
                 id: "depth_clamp",
                 label: "Depth clamp",
-                help: "At what is covered: the GPU flattens casters before it onto the near plane (pancaking). The \
-                       finest depth steps, and no casters are lost.",
+                help: "At the covered area. The GPU flattens casters between the light and the near plane onto the \
+                       plane (pancaking). This gives the finest depth steps and loses no casters.",
             },
             ChoiceOption {
                 id: "none",
                 label: "None",
-                help: "At what is covered: casters before it are lost, which leaves holes, as in the XNA sample.",
+                help: "At the covered area. Casters between the light and the near plane are lost, which leaves holes, \
+                       as in the XNA sample.",
             },
         ]),
         field: choice!(technique.fit.casters: CasterPolicy [PerObject, Extend, SceneBounds, DepthClamp, None]),
         inert: |s| {
-            (kind(s) == Some(FitKind::XnaSample))
-                .then_some("The XNA sample's fit takes no account of casters; choose another fit.")
+            (kind(s) == Some(FitKind::XnaSample)).then_some("The XNA sample's fit ignores casters; choose another fit.")
         },
     },
     Parameter {
@@ -246,18 +248,17 @@ pub(super) const ROWS: &[Parameter] = &[
         group: Group::Fit,
         label: "Caster extension",
         unit: "m",
-        help: "Moves the map's near plane toward the light, so that casters outside the view still throw their \
-           shadows into it. Raise it when shadows of tall or off-screen objects are missing; a long range \
-           costs depth precision.",
+        help: "Moves the map's near plane toward the light, so that casters outside the view still cast shadows into \
+           it. Raise it if shadows of tall or off-screen objects are missing; a long extension costs depth precision.",
         kind: Kind::Number(Number { min: 0.0, max: 10_000.0, step: 1.0, logarithmic: true, decimals: 1, unset: None }),
         field: field!(technique.fit.caster_extension),
         inert: |s| match (kind(s), s.technique.fit.casters) {
             (Some(FitKind::XnaSample), _) => Some("The XNA sample's fit has no caster extension; choose another fit."),
             (_, CasterPolicy::Extend) => None,
             (_, CasterPolicy::PerObject | CasterPolicy::SceneBounds) => {
-                Some("The objects place the near plane where they are known; set Casters to By extension.")
+                Some("The near plane is placed by the objects, if these are known; set Casters to By extension.")
             }
-            _ => Some("The near plane is placed by something else; set Casters to By extension."),
+            _ => Some("The near plane does not use the extension; set Casters to By extension."),
         },
     },
     Parameter {
@@ -265,8 +266,8 @@ pub(super) const ROWS: &[Parameter] = &[
         group: Group::Fit,
         label: "Border",
         unit: "texels",
-        help: "Texels that stay free between what is covered and the map's border, so that the filter and the normal offset \
-           find depths there.",
+        help: "Free texels between the covered area and the map's border, for the reach of the filter and of the \
+           normal offset.",
         kind: Kind::Number(Number {
             min: 0.0,
             max: WIDEST_BORDER,
@@ -277,7 +278,7 @@ pub(super) const ROWS: &[Parameter] = &[
                 option: ChoiceOption {
                     id: "auto",
                     label: "from filter and bias",
-                    help: "As many as the filter and the normal offset can reach.",
+                    help: "Equal to the reach of the filter and the normal offset.",
                 },
                 initial: 3.0,
             }),
@@ -285,7 +286,7 @@ pub(super) const ROWS: &[Parameter] = &[
         field: field!(technique.fit.border),
         inert: |s| {
             (kind(s) == Some(FitKind::XnaSample))
-                .then_some("The XNA sample's fit keeps no texels free; choose another fit, or use the box margin.")
+                .then_some("The XNA sample's fit has no border; choose another fit, or use the box margin.")
         },
     },
     Parameter {
@@ -294,7 +295,7 @@ pub(super) const ROWS: &[Parameter] = &[
         label: "Box margin",
         unit: "m",
         help: "Enlarges the light's box on all six sides: the XNA sample's own cure for missing casters. It spreads \
-           the same texels over more ground, so prefer the choice of casters where there is one.",
+           the same texels over more ground, so prefer Casters with all other fits.",
         kind: Kind::Number(Number { min: 0.0, max: 1_000.0, step: 0.1, logarithmic: true, decimals: 1, unset: None }),
         field: field!(technique.fit.margin),
         inert: always_active,
@@ -304,20 +305,20 @@ pub(super) const ROWS: &[Parameter] = &[
     up("fit.up_z", "Up, z", field!(technique.fit.up.z)),
 ];
 
-/// The rule of each map's fit; `None` of windows.
+/// Returns the fit of each map; `None` for windows.
 pub(super) fn kind(s: &Settings) -> Option<FitKind> {
     s.technique.maps.shape().map(|shape| shape.kind)
 }
 
-/// A component of the direction that is up.
+/// Returns the row for a component of the up direction.
 const fn up(id: &'static str, label: &'static str, field: Field) -> Parameter {
     Parameter {
         id,
         group: Group::Fit,
         label,
         unit: "",
-        help: "Which way is up in the world, as three components of a direction: 0, 1, 0 where y is up, 0, 0, 1 \
-               where z is. The map's axes follow it.",
+        help: "Up direction of the world as three components: 0, 1, 0 if y is up, 0, 0, 1 if z is up. The map's axes \
+               follow it.",
         kind: Kind::Number(Number { min: -1.0, max: 1.0, step: 0.1, logarithmic: false, decimals: 2, unset: None }),
         field,
         inert: always_active,

@@ -1,4 +1,4 @@
-//! The rows of a shadow map: what it stores and how it is read.
+//! The rows for the contents of a shadow map and its filter.
 
 use glam::UVec2;
 use shadowfit::DepthConvention;
@@ -11,15 +11,15 @@ use crate::{ChoiceOption, Group, Kind, Number, Parameter, Unset, Value};
 /// Least and greatest side of a map, in texels.
 pub(super) const SIDES: (f64, f64) = (256.0, 8192.0);
 
-/// In the order that they are shown.
+/// Rows in display order.
 pub(super) const ROWS: &[Parameter] = &[
     Parameter {
         id: "map.resolution",
         group: Group::Map,
         label: "Resolution",
         unit: "texels",
-        help: "Width of each shadow map, and its height where it is square. Doubling it makes edges half as jagged and \
-           takes four times the memory and fill rate: a map of 2048 texels has 16 MiB.",
+        help: "Width of each shadow map, and its height if it is square. Doubling it makes edges half as jagged and \
+           takes four times the memory and fill rate: a map of 2048×2048 texels takes 16 MiB.",
         kind: Kind::Number(Number {
             min: SIDES.0,
             max: SIDES.1,
@@ -48,7 +48,7 @@ pub(super) const ROWS: &[Parameter] = &[
         group: Group::Map,
         label: "Height",
         unit: "texels",
-        help: "Height of each shadow map, if they are not square.",
+        help: "Height of each shadow map, if it is not square.",
         kind: Kind::Number(Number {
             min: SIDES.0,
             max: SIDES.1,
@@ -80,9 +80,9 @@ pub(super) const ROWS: &[Parameter] = &[
         group: Group::Map,
         label: "Format",
         unit: "",
-        help: "The texture format that stores the depths. Those with 32 bits give the same shadows; coarser ones take less \
-           memory, and demand a larger bias (Depth steps). Colour formats are compared in the shader, as the XNA sample \
-           does.",
+        help: "Texture format of the stored depths. All 32-bit formats give the same shadows. Coarser formats take \
+           less memory and need a larger bias (Depth steps). Colour formats are compared in the shader, as in the XNA \
+           sample.",
         kind: Kind::Choice(&[
             ChoiceOption {
                 id: "depth32float",
@@ -92,30 +92,30 @@ pub(super) const ROWS: &[Parameter] = &[
             ChoiceOption {
                 id: "depth16_unorm",
                 label: "Depth 16-bit",
-                help: "A depth texture of half the memory, with 65,536 steps over the map's depth.",
+                help: "A depth texture with half the memory, and 65,536 steps over the map's depth range.",
             },
             ChoiceOption {
                 id: "r32float",
                 label: "Colour 32-bit float",
-                help: "One colour channel with a depth buffer of its own, compared in the shader, as the XNA \
-                       sample has it.",
+                help: "One colour channel with its own depth buffer, compared in the shader, as in the XNA sample.",
             },
             ChoiceOption {
                 id: "r16_float",
                 label: "Colour 16-bit float",
-                help: "The same with a 16-bit float, the XNA sample's second choice: 2,048 steps over the far half of \
-                       the map's depth.",
+                help: "One 16-bit float colour channel with its own depth buffer, the XNA sample's second choice: \
+                       steps of 1/2,048 in the far half of the map's depth range.",
             },
             ChoiceOption {
                 id: "rgba8_packed",
                 label: "Packed in four channels",
-                help: "A 32-bit float in the four channels of an ordinary colour, the XNA sample's third choice: works \
-                       everywhere, and loses nothing.",
+                help: "A 32-bit float packed into the four channels of an 8-bit colour, the XNA sample's third choice: \
+                       works everywhere, and loses no precision.",
             },
             ChoiceOption {
                 id: "r8_grey",
                 label: "8-bit grey",
-                help: "256 steps over the map's depth: far too coarse, as the bands of acne show.",
+                help: "256 steps over the map's depth range, for demonstration: far too coarse, which shows as bands \
+                       of acne.",
             },
         ]),
         field: choice!(technique.format: MapFormat [Depth32Float, Depth16Unorm, R32Float, R16Float, Rgba8Packed, R8Grey]),
@@ -126,14 +126,13 @@ pub(super) const ROWS: &[Parameter] = &[
         group: Group::Map,
         label: "Filter",
         unit: "",
-        help: "How the stored depths become a shadow. A wider filter softens jagged edges and loses shadows that are \
-           thinner than it. It also reaches farther, so that the normal offset has to grow with it; the receiver \
-           plane does not.",
+        help: "How stored depths become a shadow. A wider filter smooths jagged edges and removes shadows that are \
+           thinner than the filter. It also needs a larger normal offset, but not a larger receiver-plane bias.",
         kind: Kind::Choice(&[
             ChoiceOption {
                 id: "point",
                 label: "Point",
-                help: "One comparison with the nearest texel: every texel shows as a hard square.",
+                help: "One comparison with the nearest texel: each texel shows as a hard square.",
             },
             ChoiceOption {
                 id: "hardware_2x2",
@@ -148,32 +147,36 @@ pub(super) const ROWS: &[Parameter] = &[
             ChoiceOption {
                 id: "pcf_5x5",
                 label: "PCF 5×5",
-                help: "A tent over 36 texels, in nine hardware look-ups: edges are smooth, and shadows thinner than two \
-                       texels fade.",
+                help: "A tent over 36 texels, in nine hardware look-ups: smooth edges. Shadows thinner than two texels \
+                       fade.",
             },
             ChoiceOption {
                 id: "pcf_7x7",
                 label: "PCF 7×7",
-                help: "A tent over 64 texels, in sixteen hardware look-ups: smoother still, and shadows thinner than \
-                       three texels fade.",
+                help: "A tent over 64 texels, in sixteen hardware look-ups: smoother still. Shadows thinner than three \
+                       texels fade.",
             },
             ChoiceOption {
                 id: "vogel_8",
                 label: "Vogel disc, 8 look-ups",
-                help: "Look-ups spread over a disc as wide as the softness says, turned from pixel to pixel: edges are \
-                       as soft near and far, with some noise.",
+                help: "Eight look-ups over a disc that is rotated from pixel to pixel. The group Soft edges sets its \
+                       radius in the world, so that near and far edges are equally soft. Shows some noise.",
             },
-            ChoiceOption { id: "vogel_16", label: "Vogel disc, 16 look-ups", help: "The same with less noise." },
+            ChoiceOption {
+                id: "vogel_16",
+                label: "Vogel disc, 16 look-ups",
+                help: "Sixteen look-ups over a disc: less noise than with eight.",
+            },
             ChoiceOption {
                 id: "vogel_32",
                 label: "Vogel disc, 32 look-ups",
-                help: "The same with the least noise, and twice the cost.",
+                help: "32 look-ups over a disc: the least noise, at twice the cost of 16.",
             },
             ChoiceOption {
                 id: "pcss",
                 label: "PCSS",
-                help: "A disc as wide as the distance to the caster makes the edge: sharp where a shadow begins, soft \
-                       far from what casts it. The dearest. It cannot be had with depth clamp.",
+                help: "A disc that widens with the distance to the caster: sharp where a shadow begins, soft far from \
+                       the caster. The most expensive filter. Not available with depth clamp.",
             },
         ]),
         field: choice!(technique.filter: FilterKind [
@@ -186,15 +189,14 @@ pub(super) const ROWS: &[Parameter] = &[
         group: Group::Map,
         label: "Edges",
         unit: "",
-        help: "Whether the filter makes the edges of shadows, or rays do where the maps are not sure. Rays make them exact, \
-           whatever the texels; they need the scene's triangles and a depth buffer before the picture is shaded, and time \
-           for each pixel near an edge.",
+        help: "Whether the filter or shadow rays decide pixels near shadow edges. Rays make edges exact at any texel \
+           size. They need the scene's triangles, a depth buffer before shading, and time for each pixel near an edge.",
         kind: Kind::Choice(&[
-            ChoiceOption { id: "filtered", label: "Filtered", help: "The filter's shadow everywhere." },
+            ChoiceOption { id: "filtered", label: "Filtered", help: "The filter decides everywhere." },
             ChoiceOption {
                 id: "traced",
                 label: "Traced",
-                help: "Where all texels that the filter reads agree, they decide; elsewhere rays do.",
+                help: "If all texels that the filter reads give one verdict, the map decides. Otherwise rays decide.",
             },
         ]),
         field: Field {
@@ -217,8 +219,8 @@ pub(super) const ROWS: &[Parameter] = &[
         group: Group::Map,
         label: "Rays per pixel",
         unit: "rays",
-        help: "Rays toward the sun from each pixel that the maps are not sure of. One gives exact, jagged edges, four smooth \
-           ones; the time that rays take grows with their number.",
+        help: "Rays toward the sun for each pixel that the maps cannot decide. One gives exact but jagged edges, four \
+           give smooth ones. The cost grows with their number.",
         kind: Kind::Number(Number {
             min: 1.0,
             max: Edges::MAX_SAMPLES as f64,
@@ -237,13 +239,13 @@ pub(super) const ROWS: &[Parameter] = &[
         group: Group::Map,
         label: "Fade out",
         unit: "",
-        help: "Share of the shadow distance over which shadows fade away before its end: 0.1 is the last tenth. 0 ends them \
-           at a line.",
+        help: "Share of the shadow distance over which shadows fade out: 0.1 is the last tenth. 0 ends them at a hard \
+           line.",
         kind: Kind::Number(Number { min: 0.0, max: 1.0, step: 0.05, logarithmic: false, decimals: 2, unset: None }),
         field: field!(technique.fade),
         inert: |s| {
             (s.technique.fit.max_distance == f32::MAX)
-                .then_some("Shadows end with the view; set Shadow distance to a number (fit.max_distance = 100).")
+                .then_some("Shadows reach the far plane; set Shadow distance to a number (fit.max_distance = 100).")
         },
     },
     Parameter {
@@ -251,8 +253,8 @@ pub(super) const ROWS: &[Parameter] = &[
         group: Group::Map,
         label: "Depth convention",
         unit: "",
-        help: "Which depths the near and far planes of the map get. The picture stays the same; choose what your \
-           graphics API and depth comparison expect.",
+        help: "Stored depths of the map's near and far planes. The picture stays the same; choose the convention of \
+           your graphics API and depth comparison.",
         kind: Kind::Choice(&[
             ChoiceOption {
                 id: "zero_to_one",

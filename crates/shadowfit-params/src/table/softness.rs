@@ -1,4 +1,4 @@
-//! The rows of soft filters: how wide penumbrae are.
+//! The rows for the penumbra width of soft filters.
 
 use shadowfit::settings::{SoftRadius, Softness};
 
@@ -6,8 +6,8 @@ use crate::field::{Field, Plain as _, code, field};
 use crate::tool::Settings;
 use crate::{ChoiceOption, Group, Kind, Number, Parameter, Value};
 
-/// Widest radius of a filter that the table allows, in texels: with it the border is less than a quarter of the smallest
-/// map, and a look-up does not read too much.
+/// Greatest radius of a filter that the table allows, in texels. With it the border stays below a quarter of
+/// the smallest map, and a look-up does not read too many texels.
 const WIDEST: f64 = 32.0;
 
 /// Widest penumbra that the table allows, in metres.
@@ -16,22 +16,22 @@ const WIDEST_METRES: f64 = 10.0;
 /// Largest sun that the table allows, as an angular radius in degrees.
 const LARGEST_SUN: f64 = 30.0;
 
-/// In the order that they are shown.
+/// Rows in display order.
 pub(super) const ROWS: &[Parameter] = &[
     Parameter {
         id: "softness.measure",
         group: Group::Softness,
         label: "Width from",
         unit: "",
-        help: "What the width of soft edges follows from. It is the same in the world for all maps, so that edges are as soft \
-           in each of them.",
+        help: "How to set the width of soft edges. All maps use the same width in the world, so that edges are equally \
+           soft in each of them.",
         kind: Kind::Choice(&[
             ChoiceOption {
                 id: "sun_angle",
                 label: "Angle of the sun",
-                help: "By how large the sun looks in the sky, as in nature.",
+                help: "From the apparent size of the sun, as in nature.",
             },
-            ChoiceOption { id: "metres", label: "Metres", help: "A width that is set in metres." },
+            ChoiceOption { id: "metres", label: "Metres", help: "A fixed width in metres." },
         ]),
         field: Field {
             get: |s| match s.technique.softness.radius {
@@ -40,7 +40,7 @@ pub(super) const ROWS: &[Parameter] = &[
             },
             set: |s, value| {
                 let radius = &mut s.technique.softness.radius;
-                // The width stays as it is, unless it is larger than the largest sun's.
+                // The width is kept, unless it exceeds the width for the largest sun.
                 *radius = match (value, *radius) {
                     (Value::Option(0), SoftRadius::Metres(metres)) => {
                         let radians = libm::atanf(metres / Softness::USUAL_DISTANCE);
@@ -62,8 +62,8 @@ pub(super) const ROWS: &[Parameter] = &[
         group: Group::Softness,
         label: "Radius of the sun",
         unit: "deg",
-        help: "Half of the angle that the sun takes up in the sky: 0.27 is the real one, more is a hazy day. PCSS softens \
-           edges by the distance to the caster; the Vogel discs take it to be 5 m.",
+        help: "Half of the angle that the sun takes up in the sky: 0.27 for the real sun, more for a hazy day. PCSS \
+           scales the width of edges with the distance to the caster; Vogel discs assume 5 m.",
         kind: Kind::Number(Number {
             min: 0.0,
             max: LARGEST_SUN,
@@ -85,8 +85,8 @@ pub(super) const ROWS: &[Parameter] = &[
         group: Group::Softness,
         label: "Radius",
         unit: "m",
-        help: "How far soft edges reach to either side, across the light. With PCSS it is that of a shadow 5 m from its \
-           caster, and grows with the distance.",
+        help: "Distance that soft edges reach to either side, perpendicular to the light. With PCSS this is the \
+           distance for a shadow 5 m from its caster, and it grows with the distance to the caster.",
         kind: Kind::Number(Number {
             min: 0.0,
             max: WIDEST_METRES,
@@ -99,7 +99,7 @@ pub(super) const ROWS: &[Parameter] = &[
         inert: |s| match s.technique.softness.radius {
             SoftRadius::Metres(_) => for_soft_filters(s),
             SoftRadius::SunAngle(_) => {
-                Some("The width follows from the sun; set Width from to Metres (softness.measure = metres).")
+                Some("The width comes from the sun; set Width from to Metres (softness.measure = metres).")
             }
         },
     },
@@ -108,8 +108,8 @@ pub(super) const ROWS: &[Parameter] = &[
         group: Group::Softness,
         label: "Least radius",
         unit: "texels",
-        help: "Soft edges are at least this wide to either side, so that they hide the map's texels where these are coarse. \
-           Raising it above the greatest radius raises that too.",
+        help: "Soft edges are at least this wide to either side, which hides the texels of coarse maps. Raising it \
+           above the greatest radius raises that too.",
         kind: Kind::Number(Number { min: 0.0, max: WIDEST, step: 0.25, logarithmic: false, decimals: 2, unset: None }),
         field: Field {
             set: |s, value| {
@@ -126,8 +126,9 @@ pub(super) const ROWS: &[Parameter] = &[
         group: Group::Softness,
         label: "Greatest radius",
         unit: "texels",
-        help: "Soft edges are at most this wide to either side. Maps have no finer texels than that allows, and as many more \
-           texels stay free at their borders: a large one looks smoother, and needs more look-ups.",
+        help: "Soft edges are at most this wide to either side: texels are never so fine that an edge would need more \
+           of them, and maps keep this many texels free at their borders. A large value looks smoother and needs more \
+           look-ups.",
         kind: Kind::Number(Number { min: 1.0, max: WIDEST, step: 0.5, logarithmic: false, decimals: 2, unset: None }),
         field: Field {
             set: |s, value| {
@@ -141,9 +142,9 @@ pub(super) const ROWS: &[Parameter] = &[
     },
 ];
 
-/// Why the softness has no effect, or `None` where it has one.
+/// Returns why the softness has no effect, or `None` if it has one.
 fn for_soft_filters(s: &Settings) -> Option<&'static str> {
     let reason =
-        "The filter's width is a number of texels; set Filter to a Vogel disc or to PCSS (map.filter = vogel_16).";
+        "This filter has a fixed width in texels; set Filter to a Vogel disc or to PCSS (map.filter = vogel_16).";
     (!s.technique.filter.is_soft()).then_some(reason)
 }

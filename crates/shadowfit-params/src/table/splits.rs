@@ -1,4 +1,4 @@
-//! The rows of the splits: how many maps there are, where one ends and the next begins, and which one a point reads.
+//! The rows for the number of maps, the splits between them, and the map that a point reads.
 
 use shadowfit::settings::{MAX_MAPS, MapSelection, SplitScheme};
 use shadowfit::{Cascades, Maps, Windows};
@@ -8,21 +8,21 @@ use crate::field::{Field, Plain as _, code, field};
 use crate::tool::Settings;
 use crate::{ChoiceOption, Group, Kind, Number, Parameter, Value};
 
-/// Initial λ of the practical splits, the usual one of other engines.
+/// Initial λ of the practical splits, common in other engines.
 const USUAL_LAMBDA: f32 = 0.5;
 
-/// Initial view depths of manual splits, in metres: each twice the one before.
+/// Initial view depths of manual splits, in metres: each is twice the previous one.
 const USUAL_SPLITS: [f32; MAX_MAPS - 1] = [5.0, 10.0, 20.0, 40.0, 80.0, 160.0, 320.0];
 
-/// In the order that they are shown.
+/// Rows in display order.
 pub(super) const ROWS: &[Parameter] = &[
     Parameter {
         id: "splits.count",
         group: Group::Splits,
         label: "Maps",
         unit: "",
-        help: "How many shadow maps share the view. Each more makes shadows sharper, and costs the memory and the time of a \
-           map.",
+        help: "Number of shadow maps for the view. Each additional map makes shadows sharper, and costs its memory and \
+           draw time.",
         kind: Kind::Number(Number {
             min: 1.0,
             max: MAX_MAPS as f64,
@@ -48,31 +48,28 @@ pub(super) const ROWS: &[Parameter] = &[
         group: Group::Splits,
         label: "Splits",
         unit: "",
-        help: "Where one map ends and the next begins. The first two look at the scene and even out how sharp its shadows \
-           are; the others are spread over the distances in view by a formula.",
+        help: "Where one map ends and the next begins. The first two options adapt to the scene and make its shadows \
+           evenly sharp. The others divide the shadow distance by a formula or by hand.",
         kind: Kind::Choice(&[
             ChoiceOption {
                 id: "from_histogram",
-                label: "From what is visible",
-                help: "By the depths that the frame before showed; where they are not known, as From boxes.",
+                label: "From visible demand",
+                help: "By the view depths of the visible points of a recent frame. If these are unknown, like From \
+                       boxes.",
             },
-            ChoiceOption {
-                id: "from_boxes",
-                label: "From boxes",
-                help: "By the depths at which the boxes of the scene lie in view.",
-            },
+            ChoiceOption { id: "from_boxes", label: "From boxes", help: "By the view depths of the scene's boxes." },
             ChoiceOption {
                 id: "practical",
                 label: "Practical",
-                help: "A mixture of logarithmic and uniform splits, by lambda (parallel-split shadow maps).",
+                help: "A mixture of logarithmic and uniform splits, weighted by lambda (parallel-split shadow maps).",
             },
             ChoiceOption {
                 id: "logarithmic",
                 label: "Logarithmic",
-                help: "Each map ends at the same multiple of where it begins, so most of them lie close to the camera.",
+                help: "Each map ends at the same multiple of its start, so that most maps lie close to the camera.",
             },
-            ChoiceOption { id: "uniform", label: "Uniform", help: "All maps serve equally long ranges." },
-            ChoiceOption { id: "manual", label: "Manual", help: "At distances that are set one by one." },
+            ChoiceOption { id: "uniform", label: "Uniform", help: "All maps have equally long ranges." },
+            ChoiceOption { id: "manual", label: "Manual", help: "At distances that you set one by one." },
         ]),
         field: Field {
             get: |s| {
@@ -108,8 +105,8 @@ pub(super) const ROWS: &[Parameter] = &[
         group: Group::Splits,
         label: "Lambda",
         unit: "",
-        help: "Share of the logarithmic splits in the practical ones: 1 spends most maps close to the camera, 0 spreads \
-           them evenly. 0.5 is a good start.",
+        help: "Weight of the logarithmic splits in the mixture: 1 puts most maps close to the camera, 0 spreads them \
+           evenly. 0.5 is a good start.",
         kind: Kind::Number(Number { min: 0.0, max: 1.0, step: 0.05, logarithmic: false, decimals: 2, unset: None }),
         field: field!(technique.maps, Maps::Cascades(Cascades { splits: SplitScheme::Practical(lambda), .. }) => lambda),
         inert: |s| match cascades(s).map(|cascades| cascades.splits) {
@@ -130,17 +127,17 @@ pub(super) const ROWS: &[Parameter] = &[
         group: Group::Splits,
         label: "Selection",
         unit: "",
-        help: "Which of the maps a point reads.",
+        help: "The map that a point reads.",
         kind: Kind::Choice(&[
             ChoiceOption {
                 id: "coverage",
                 label: "By coverage",
-                help: "The finest one that holds the point, whatever its distance: sharper, at no cost.",
+                help: "The finest map that covers the point, at any distance: sharper, at no cost.",
             },
             ChoiceOption {
                 id: "view_depth",
                 label: "By view depth",
-                help: "The one for the point's distance from the camera, as other engines do.",
+                help: "The map for the point's view depth, as in other engines.",
             },
         ]),
         field: Field {
@@ -157,7 +154,7 @@ pub(super) const ROWS: &[Parameter] = &[
             is_of_variant: true,
         },
         inert: |s| match s.technique.maps {
-            Maps::Single(_) => Some("One map leaves nothing to select; raise the number of maps."),
+            Maps::Single(_) => Some("A single map leaves nothing to select; raise the number of maps."),
             Maps::Windows(_) => Some("Windows are always read by coverage; choose another fit."),
             Maps::Cascades(_) => None,
         },
@@ -167,8 +164,8 @@ pub(super) const ROWS: &[Parameter] = &[
         group: Group::Splits,
         label: "Blend",
         unit: "texels",
-        help: "Width of the band inside a map's border in which the shader blends from it into the next coarser one. It \
-           hides the line between two maps; 0 turns it off.",
+        help: "Width of the band inside a map's border in which the shader blends into the next coarser map. It hides \
+           the line between two maps; 0 turns it off.",
         kind: Kind::Number(Number {
             min: 0.0,
             max: MapSelection::MAX_BLEND as f64,
@@ -180,11 +177,11 @@ pub(super) const ROWS: &[Parameter] = &[
         field: field!(technique.maps, Maps::Windows(Windows { blend, .. })
             | Maps::Cascades(Cascades { selection: MapSelection::Coverage { blend }, .. }) => blend),
         inert: |s| match s.technique.maps.selection() {
-            _ if s.technique.maps.count() < 2 => Some("One map is blended into none; raise the number of maps."),
+            _ if s.technique.maps.count() < 2 => Some("One map has nothing to blend into; raise the number of maps."),
             MapSelection::Coverage { .. } => None,
             MapSelection::ViewDepth { .. } => Some(
-                "Maps that are read by view depth are blended over the overlap; set Selection to By coverage (splits.selection = \
-             coverage).",
+                "Maps read by view depth are blended over the overlap; set Selection to By coverage (splits.selection \
+             = coverage).",
             ),
         },
     },
@@ -193,54 +190,53 @@ pub(super) const ROWS: &[Parameter] = &[
         group: Group::Splits,
         label: "Overlap",
         unit: "",
-        help: "Share of each map's range of distances that the next map covers too, so that the shader can blend between \
-           them. It hides the line between two maps, and costs a little of their sharpness.",
+        help: "Share of each map's range of view depths that the next map covers too, so that the shader can blend \
+           between them. It hides the line between two maps, and costs a little sharpness.",
         kind: Kind::Number(Number { min: 0.0, max: 1.0, step: 0.05, logarithmic: false, decimals: 2, unset: None }),
         field: field!(technique.maps, Maps::Cascades(Cascades { selection: MapSelection::ViewDepth { overlap }, .. }) => overlap),
         inert: |s| match s.technique.maps {
-            Maps::Windows(_) => Some("Windows are blended toward their borders, over the blend; choose another fit."),
-            Maps::Single(_) => Some("One map overlaps with none; raise the number of maps."),
+            Maps::Windows(_) => Some("Windows are blended near their borders, by Blend; choose another fit."),
+            Maps::Single(_) => Some("A single map has no map to overlap with; raise the number of maps."),
             Maps::Cascades(Cascades { selection: MapSelection::Coverage { .. }, .. }) => Some(
-                "Maps that are read by coverage are blended toward their borders; set Selection to By view depth (splits.selection \
-             = view_depth).",
+                "Maps read by coverage are blended near their borders; set Selection to By view depth \
+             (splits.selection = view_depth).",
             ),
             Maps::Cascades(_) => None,
         },
     },
 ];
 
-/// The view depth at which one of the maps ends.
+/// Returns the row for the view depth at which a map ends.
 const fn manual<const MAP: usize>(id: &'static str, label: &'static str) -> Parameter {
     Parameter {
         id,
         group: Group::Splits,
         label,
         unit: "m",
-        help: "Distance from the camera, along its view, at which this map ends and the next one begins. Each has to be \
-               greater than the one before.",
+        help: "View depth at which this map ends and the next one begins. Each must be greater than the previous one.",
         kind: Kind::Number(Number { min: 0.0, max: 100_000.0, step: 0.1, logarithmic: true, decimals: 2, unset: None }),
         field: field!(technique.maps, Maps::Cascades(Cascades { splits: SplitScheme::Manual(splits), .. }) => splits[MAP]),
         inert: |s| match cascades(s) {
             None => no_splits(s),
             Some(Cascades { splits: SplitScheme::Manual(_), count, .. }) if MAP + 1 < *count as usize => None,
             Some(Cascades { splits: SplitScheme::Manual(_), .. }) => {
-                Some("There is no such map; raise the number of maps.")
+                Some("This map does not exist; raise the number of maps.")
             }
-            Some(_) => Some("The splits are chosen by a rule; set Splits to Manual (splits.scheme = manual)."),
+            Some(_) => Some("A rule chooses the splits; set Splits to Manual (splits.scheme = manual)."),
         },
     }
 }
 
-/// The cascades, if the maps are any.
+/// Returns the cascades, or `None` for other maps.
 fn cascades(s: &Settings) -> Option<&Cascades> {
     if let Maps::Cascades(cascades) = &s.technique.maps { Some(cascades) } else { None }
 }
 
-/// Why there are no splits, or `None` where there are some.
+/// Returns why there are no splits, or `None` if there are some.
 fn no_splits(s: &Settings) -> Option<&'static str> {
     match s.technique.maps {
-        Maps::Windows(_) => Some("Windows are no cascades, so there is nothing to split; choose another fit."),
-        Maps::Single(_) => Some("One map has no splits; raise the number of maps."),
+        Maps::Windows(_) => Some("Windows have no splits; choose another fit."),
+        Maps::Single(_) => Some("A single map has no splits; raise the number of maps."),
         Maps::Cascades(_) => None,
     }
 }

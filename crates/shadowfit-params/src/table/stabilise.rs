@@ -1,4 +1,4 @@
-//! The rows of the stabilisation.
+//! The rows for stabilisation.
 
 use shadowfit::settings::{Hysteresis, Stabilise};
 use shadowfit::{Cascades, Maps, SingleMap, Windows};
@@ -7,7 +7,7 @@ use crate::field::{Field, code, field};
 use crate::tool::Settings;
 use crate::{ChoiceOption, Group, Kind, Number, Parameter, Value};
 
-/// A number of kept cascades or of one kept map.
+/// A number of held cascades or of one held map.
 macro_rules! held {
     ($part:ident) => {
         field!(technique.maps, Maps::Cascades(Cascades { stabilise: Stabilise::Hysteresis(hold), .. })
@@ -15,28 +15,28 @@ macro_rules! held {
     };
 }
 
-/// In the order that they are shown.
+/// Rows in display order.
 pub(super) const ROWS: &[Parameter] = &[
     Parameter {
         id: "stabilise.mode",
         group: Group::Stabilise,
         label: "Stabilise",
         unit: "",
-        help: "Whether maps stay where they are while the camera moves. A map that is fitted anew in each frame has the \
-           finest texels, but its shadow edges crawl.",
+        help: "Whether maps keep their place while the camera moves. Maps that are fitted in each frame have the \
+           finest texels, but their shadow edges crawl.",
         kind: Kind::Choice(&[
             ChoiceOption {
                 id: "hysteresis",
-                label: "Keep while it serves",
-                help: "A map is kept, and moved by whole texels, until it no longer covers what it must.",
+                label: "Hold",
+                help: "Keeps a map, moved only by whole texels, until it no longer covers the visible area.",
             },
             ChoiceOption {
                 id: "snap",
                 label: "Snap to texels",
-                help: "Maps move by whole texels of a grid that is fixed to the world. Edges still crawl while the \
+                help: "Maps move by whole texels of a grid that is fixed to the world. Edges still crawl when the \
                        camera turns, except with the stable sphere.",
             },
-            ChoiceOption { id: "off", label: "Off", help: "Maps are fitted anew in each frame." },
+            ChoiceOption { id: "off", label: "Off", help: "Maps are fitted again in each frame." },
         ]),
         field: Field {
             get: |s| {
@@ -68,8 +68,8 @@ pub(super) const ROWS: &[Parameter] = &[
         group: Group::Stabilise,
         label: "Margin",
         unit: "",
-        help: "Room left around what a new map must cover, as a share of its width, so that it can be kept for longer. \
-           More room makes texels coarser.",
+        help: "Free space around the area that a new map must cover, as a share of its width, so that the map can be \
+           held longer. More space makes texels coarser.",
         kind: Kind::Number(Number { min: 0.0, max: 10.0, step: 0.01, logarithmic: true, decimals: 2, unset: None }),
         field: held!(margin),
         inert: only_held,
@@ -79,8 +79,8 @@ pub(super) const ROWS: &[Parameter] = &[
         group: Group::Stabilise,
         label: "Growth",
         unit: "×",
-        help: "A new map also covers what the camera will see if it goes on moving as it does, as far ahead as makes the \
-           map wider by this factor at most.",
+        help: "Limit on the enlargement of a new map that looks ahead: the map also covers the area that the camera \
+           will see if its motion continues. A larger map is held longer, but has coarser texels.",
         kind: Kind::Number(Number { min: 1.0, max: 100.0, step: 0.05, logarithmic: true, decimals: 2, unset: None }),
         field: held!(max_growth),
         inert: only_held,
@@ -90,8 +90,8 @@ pub(super) const ROWS: &[Parameter] = &[
         group: Group::Stabilise,
         label: "Oversize",
         unit: "×",
-        help: "A kept map is made anew once its texels are larger than they have to be by this factor, and kept splits and \
-           the depths of windows are likewise. Lower is sharper, higher is calmer.",
+        help: "A held map is fitted again once its texels are larger than necessary by this factor. This limit also \
+           applies to held splits and to the depth ranges of windows. Lower is sharper, higher is more stable.",
         kind: Kind::Number(Number { min: 1.0, max: 100.0, step: 0.05, logarithmic: true, decimals: 2, unset: None }),
         field: field!(technique.maps, Maps::Windows(Windows { max_depth_oversize: max_oversize, .. })
             | Maps::Cascades(Cascades {
@@ -101,7 +101,7 @@ pub(super) const ROWS: &[Parameter] = &[
                 stabilise: Stabilise::Snap { max_oversize } | Stabilise::Hysteresis(Hysteresis { max_oversize, .. }), ..
             }) => max_oversize),
         inert: |s| {
-            (stabilise(s) == Some(Stabilise::Off)).then_some("Nothing is kept from frame to frame; turn on Stabilise.")
+            (stabilise(s) == Some(Stabilise::Off)).then_some("Nothing is held between frames; turn on Stabilise.")
         },
     },
     Parameter {
@@ -109,14 +109,14 @@ pub(super) const ROWS: &[Parameter] = &[
         group: Group::Stabilise,
         label: "Horizon",
         unit: "frames",
-        help: "How many frames of the camera's motion a new map looks ahead at most.",
+        help: "Greatest number of frames that a new map looks ahead along the camera's motion.",
         kind: Kind::Number(Number { min: 0.0, max: 1_000.0, step: 1.0, logarithmic: true, decimals: 0, unset: None }),
         field: held!(look_ahead),
         inert: only_held,
     },
 ];
 
-/// What keeps cascades or one map stable; `None` of windows.
+/// Returns the stabilisation of cascades or of a single map; `None` for windows.
 fn stabilise(s: &Settings) -> Option<Stabilise> {
     match s.technique.maps {
         Maps::Windows(_) => None,
@@ -126,11 +126,10 @@ fn stabilise(s: &Settings) -> Option<Stabilise> {
 
 fn only_held(s: &Settings) -> Option<&'static str> {
     let is_held = matches!(stabilise(s), Some(Stabilise::Hysteresis(_)));
-    windows_are_still(s)
-        .or_else(|| (!is_held).then_some("Only kept maps look ahead; set Stabilise to Keep while it serves."))
+    windows_are_still(s).or_else(|| (!is_held).then_some("Only held maps use this; set Stabilise to Hold."))
 }
 
 fn windows_are_still(s: &Settings) -> Option<&'static str> {
     matches!(s.technique.maps, Maps::Windows(_))
-        .then_some("Windows stay where they are by a rule of their own; choose another fit.")
+        .then_some("Windows are stable without this setting; choose another fit.")
 }

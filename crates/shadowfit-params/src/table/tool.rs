@@ -1,4 +1,4 @@
-//! The rows of the tools' settings: sun, camera and what is drawn.
+//! The rows for the tools' settings: sun, camera and view.
 
 use std::f64::consts::TAU;
 
@@ -15,23 +15,23 @@ const VIEWS: &[ChoiceOption] = &[
     ChoiceOption {
         id: "truth",
         label: "Truth",
-        help: "The scene with the shadows that rays find: what the final picture should look like.",
+        help: "The scene with ray-traced shadows: how the final picture should look.",
     },
     ChoiceOption {
         id: "error",
         label: "Errors",
-        help: "The final picture in grey, and each pixel that rays prove wrong in the colour of its class.",
+        help: "The final picture in grey, with each pixel that rays prove wrong in the colour of its class.",
     },
     ChoiceOption {
         id: "pixels_per_texel",
         label: "Pixels per texel",
-        help: "How many screen pixels a shadow texel covers: red where texels can be seen, blue where they are \
-                       finer than the picture needs.",
+        help: "Screen pixels per shadow texel: red where texels are visible, blue where they are finer than the \
+                       picture needs.",
     },
     ChoiceOption {
         id: "maps",
         label: "Maps",
-        help: "Which map each point reads, in the colours of the table of the maps.",
+        help: "The map that each point reads, in the colours of the table of maps.",
     },
     ChoiceOption {
         id: "texel_grid",
@@ -41,25 +41,25 @@ const VIEWS: &[ChoiceOption] = &[
     ChoiceOption {
         id: "demand",
         label: "Demand",
-        help: "The scene as the light sees it: where the picture asks for how fine a texel, and the maps laid \
-                       over it.",
+        help: "The scene from the light's direction: the texel size that the picture needs at each place, under the \
+                       outlines of the maps.",
     },
     ChoiceOption {
         id: "updates",
         label: "Map updates",
-        help: "All maps side by side: what was kept in them, what was drawn anew, and what moves.",
+        help: "All maps side by side: kept texels, redrawn texels, and moving casters.",
     },
     ChoiceOption {
         id: "outside",
         label: "Outside",
-        help: "The camera from outside, with its frustum and the boxes of the maps drawn. A caster outside a \
-                       map's box throws no shadow there.",
+        help: "The camera from outside, with its frustum and the boxes of the maps. A caster outside a map's box casts \
+                       no shadow there.",
     },
     ChoiceOption {
         id: "traced",
         label: "Traced",
-        help: "The scene in grey, and in colours the pixels whose edges rays made, and those that were left to the \
-                       filter.",
+        help: "The scene in grey. Colours show the pixels near edges that rays decided, and the undecided pixels that \
+                       were left to the filter.",
     },
 ];
 
@@ -69,15 +69,15 @@ pub fn view_option(mode: ViewMode) -> &'static ChoiceOption {
     &VIEWS[index]
 }
 
-/// In the order that they are shown.
+/// Rows in display order.
 pub(super) const ROWS: &[Parameter] = &[
     Parameter {
         id: "light.hour",
         group: Group::Light,
         label: "Time of day",
         unit: "h",
-        help: "Moves the sun as on a day in spring: it rises at 6 in the east (+x), stands 50 degrees high in the south (+z) \
-           at 12, and sets at 18 in the west.",
+        help: "Moves the sun as on a day in spring: it rises at 6 in the east (+x), is 50 degrees high in the south \
+           (+z) at 12, and sets at 18 in the west.",
         kind: Kind::Number(Number {
             min: DAY.0 as f64,
             max: DAY.1 as f64,
@@ -88,7 +88,7 @@ pub(super) const ROWS: &[Parameter] = &[
                 option: ChoiceOption {
                     id: "by_angles",
                     label: "By angles",
-                    help: "The sun stands where azimuth and elevation say.",
+                    help: "Azimuth and elevation place the sun.",
                 },
                 initial: 10.0,
             }),
@@ -101,8 +101,7 @@ pub(super) const ROWS: &[Parameter] = &[
         group: Group::Light,
         label: "Azimuth",
         unit: "deg",
-        help: "Compass angle of the point that the light comes from, from +z toward +x. Setting it takes the sun from the \
-           file.",
+        help: "Compass angle of the sun, from +z toward +x. Setting it detaches the sun from the file's light.",
         kind: Kind::Number(Number { min: 0.0, max: 360.0, step: 1.0, logarithmic: false, decimals: 1, unset: None }),
         field: Field {
             get: |s| Some(Value::Number(turn(f64::from(s.light.azimuth)))),
@@ -119,8 +118,8 @@ pub(super) const ROWS: &[Parameter] = &[
         group: Group::Light,
         label: "Elevation",
         unit: "deg",
-        help: "Angle of the sun above the horizon. A low sun throws long shadows and grazes the ground, which is \
-           the hardest case for biases. Setting it takes the sun from the file.",
+        help: "Angle of the sun above the horizon. A low sun casts long shadows and grazes the ground, which is the \
+           hardest case for biases. Setting it detaches the sun from the file's light.",
         kind: Kind::Number(Number { min: 0.0, max: 90.0, step: 1.0, logarithmic: false, decimals: 1, unset: None }),
         field: Field {
             set: |s, value| {
@@ -136,8 +135,8 @@ pub(super) const ROWS: &[Parameter] = &[
         group: Group::Light,
         label: "Sun of the file",
         unit: "",
-        help: "Number of the file's directional light that is the sun. It moves as the file's animation moves it. The menu \
-           Scene lists the lights by name.",
+        help: "Number of the directional light in the scene file that serves as the sun. It moves with the file's \
+           animation. The menu Scene lists the lights by name.",
         kind: Kind::Number(Number {
             min: 1.0,
             max: MOST_OF_A_FILE,
@@ -148,7 +147,7 @@ pub(super) const ROWS: &[Parameter] = &[
                 option: ChoiceOption {
                     id: "by_hand",
                     label: "By hand",
-                    help: "The sun stands where time of day, azimuth and elevation say.",
+                    help: "Time of day, azimuth and elevation place the sun.",
                 },
                 initial: 1.0,
             }),
@@ -161,8 +160,8 @@ pub(super) const ROWS: &[Parameter] = &[
         group: Group::Light,
         label: "Animate",
         unit: "",
-        help: "Lets the sun circle the vertical, or pass over the day where a time of day is set. Watch the shadow edges \
-           crawl while the fit turns with it.",
+        help: "Moves the sun around the vertical axis, or through the day if a time of day is set. Shadow edges crawl \
+           while the maps turn with the sun.",
         kind: Kind::Toggle,
         field: field!(light.animate),
         inert: always_active,
@@ -172,18 +171,18 @@ pub(super) const ROWS: &[Parameter] = &[
         group: Group::Light,
         label: "Speed of the sun",
         unit: "deg/s",
-        help: "How fast the sun moves while it is animated. The real one turns 0.004 degrees a second.",
+        help: "Speed of the animated sun. The real sun turns 0.004 degrees a second.",
         kind: Kind::Number(Number { min: 0.0, max: 180.0, step: 0.5, logarithmic: true, decimals: 2, unset: None }),
         field: field!(light.animate_speed),
-        inert: |s| (!s.light.animate).then_some("The sun stands still; turn on Animate."),
+        inert: |s| (!s.light.animate).then_some("The sun does not move; turn on Animate."),
     },
     Parameter {
         id: "camera.file",
         group: Group::Camera,
         label: "Camera of the file",
         unit: "",
-        help: "Number of the file's camera that is followed, also while the file's animation moves it. Flying ends that. The \
-           menu Scene lists the cameras by name.",
+        help: "Number of the file's camera to follow, including its animation. Flying stops following it. The menu \
+           Scene lists the cameras by name.",
         kind: Kind::Number(Number {
             min: 1.0,
             max: MOST_OF_A_FILE,
@@ -191,7 +190,7 @@ pub(super) const ROWS: &[Parameter] = &[
             logarithmic: true,
             decimals: 0,
             unset: Some(Unset {
-                option: ChoiceOption { id: "free", label: "Free flight", help: "The camera goes where you fly it." },
+                option: ChoiceOption { id: "free", label: "Free flight", help: "You fly the camera." },
                 initial: 1.0,
             }),
         }),
@@ -203,8 +202,7 @@ pub(super) const ROWS: &[Parameter] = &[
         group: Group::Camera,
         label: "Height of the view",
         unit: "m",
-        help: "Height of the picture of an orthographic lens, whose lines of sight are parallel. Flying forward or back changes \
-           it.",
+        help: "Height of the picture of an orthographic lens. Flying forward or back changes it.",
         kind: Kind::Number(Number {
             min: HEIGHTS.0 as f64,
             max: HEIGHTS.1 as f64,
@@ -224,7 +222,7 @@ pub(super) const ROWS: &[Parameter] = &[
         group: Group::Camera,
         label: "Field of view",
         unit: "deg",
-        help: "Vertical angle of the lens. A wide view spreads the shadow map over more ground.",
+        help: "Vertical field of view of the lens. A wide view spreads the shadow map over more ground.",
         kind: Kind::Number(Number { min: 0.1, max: 179.5, step: 1.0, logarithmic: false, decimals: 1, unset: None }),
         field: field!(camera.fov_y),
         inert: |s| s.camera.height.map(|_| "The lens is orthographic; set Height of the view to Perspective."),
@@ -234,7 +232,7 @@ pub(super) const ROWS: &[Parameter] = &[
         group: Group::Camera,
         label: "Near plane",
         unit: "m",
-        help: "Nothing nearer than this is drawn. Far plane and shadow distance are kept at twice this or more.",
+        help: "Nothing nearer than this is drawn. Far plane and shadow distance stay at twice this or more.",
         kind: Kind::Number(Number { min: 1e-6, max: 100.0, step: 0.01, logarithmic: true, decimals: 3, unset: None }),
         field: Field {
             set: |s, value| {
@@ -253,8 +251,8 @@ pub(super) const ROWS: &[Parameter] = &[
         group: Group::Camera,
         label: "Far plane",
         unit: "m",
-        help: "Nothing farther than this is drawn; shadows end here at the latest. The near plane is kept at half \
-           of this or less.",
+        help: "Nothing farther than this is drawn, and shadows end here at the latest. The near plane stays at half of \
+           this or less.",
         kind: Kind::Number(Number { min: 1e-4, max: 1e6, step: 1.0, logarithmic: true, decimals: 1, unset: None }),
         field: Field {
             set: |s, value| {
@@ -270,7 +268,7 @@ pub(super) const ROWS: &[Parameter] = &[
         group: Group::Camera,
         label: "Flying speed",
         unit: "m/s",
-        help: "How fast the camera flies. Raise it in large scenes.",
+        help: "Speed of the flying camera. Raise it in large scenes.",
         kind: Kind::Number(Number {
             min: FLYING_SPEEDS.0 as f64,
             max: 10_000.0,
@@ -287,7 +285,7 @@ pub(super) const ROWS: &[Parameter] = &[
         group: Group::View,
         label: "View",
         unit: "",
-        help: "What the picture shows of the scene.",
+        help: "The displayed picture.",
         kind: Kind::Choice(VIEWS),
         field: choice!(view.mode in ViewMode::ALL),
         inert: always_active,
@@ -297,13 +295,13 @@ pub(super) const ROWS: &[Parameter] = &[
         group: Group::View,
         label: "Judge live",
         unit: "",
-        help: "Compares the picture with rays all the time, for the figures of its quality. Off, it is done only where the view \
-           or the marks show it: a graphics card hardly notices, but without one it takes a part of the CPU.",
+        help: "Compares every picture with rays, for the quality figures. If off, pictures are judged only for views \
+           and marks that need it. This costs little on a graphics card; without one, it takes part of the CPU.",
         kind: Kind::Toggle,
         field: field!(view.judge),
         inert: |s| {
             let is_shown = s.view.mode.is_judged() || s.view.marks != ErrorMarks::Off;
-            is_shown.then_some("The view shows how wrong the picture is, so that it is judged anyway.")
+            is_shown.then_some("The view or the marks need judged pictures, so they are judged anyway.")
         },
     },
     Parameter {
@@ -311,10 +309,10 @@ pub(super) const ROWS: &[Parameter] = &[
         group: Group::View,
         label: "Mark wrong pixels",
         unit: "",
-        help: "Marks the pixels that rays prove wrong, in the colour of their class, in the views of the camera.",
+        help: "Marks pixels that rays prove wrong, in the colour of their class, in views of the camera.",
         kind: Kind::Choice(&[
             ChoiceOption { id: "off", label: "Off", help: "Nothing is marked." },
-            ChoiceOption { id: "outline", label: "Outline", help: "Areas of wrong pixels are outlined." },
+            ChoiceOption { id: "outline", label: "Outline", help: "Outlines areas of wrong pixels." },
             ChoiceOption { id: "blink", label: "Blink", help: "Wrong pixels blink." },
         ]),
         field: choice!(view.marks in [ErrorMarks::Off, ErrorMarks::Outline, ErrorMarks::Blink]),
@@ -335,8 +333,8 @@ pub(super) const ROWS: &[Parameter] = &[
         group: Group::View,
         label: "Blended surfaces cast",
         unit: "",
-        help: "Lets surfaces that are blended cast shadows where their alpha is at least 0.5: many files blend everything. \
-           Turn it off for glass and smoke of higher alpha.",
+        help: "Lets blended surfaces cast shadows where their alpha is at least 0.5, since many files blend \
+           everything. Turn it off for glass and smoke with a higher alpha.",
         kind: Kind::Toggle,
         field: field!(view.blended_cast),
         inert: always_active,
@@ -346,7 +344,7 @@ pub(super) const ROWS: &[Parameter] = &[
         group: Group::View,
         label: "Shadow map inset",
         unit: "",
-        help: "Shows shadow maps themselves in a corner: how much of them is used and what is missing from them.",
+        help: "Shows shadow maps in a corner: how much of each is used and what is missing from it.",
         kind: Kind::Choice(&[
             ChoiceOption { id: "off", label: "Off", help: "No map is shown." },
             ChoiceOption { id: "one", label: "One map", help: "One map is shown." },
@@ -360,7 +358,7 @@ pub(super) const ROWS: &[Parameter] = &[
         group: Group::View,
         label: "Map in the inset",
         unit: "",
-        help: "Which map the inset shows, map 1 being the nearest, or the finest window.",
+        help: "Number of the map in the inset. Map 1 is the nearest one, or the finest window.",
         kind: Kind::Number(Number {
             min: 1.0,
             max: MAX_MAPS as f64,
@@ -392,7 +390,7 @@ pub(super) const ROWS: &[Parameter] = &[
                 option: ChoiceOption {
                     id: "automatic",
                     label: "Automatic",
-                    help: "Black and white are the depths between which the scene lies in the map.",
+                    help: "Black and white are the least and the greatest depth of the scene in the map.",
                 },
                 initial: 0.0,
             }),
@@ -413,7 +411,7 @@ pub(super) const ROWS: &[Parameter] = &[
         group: Group::View,
         label: "White at depth",
         unit: "",
-        help: "Stored depth that insets show as white. Below the one of black, near and far are swapped.",
+        help: "Stored depth that insets show as white. A value below Black at depth swaps near and far.",
         kind: Kind::Number(Number { min: 0.0, max: 1.0, step: 0.01, logarithmic: false, decimals: 3, unset: None }),
         field: Field {
             get: |s| s.view.inset_depths.map(|[_, white]| white.value()),
@@ -428,7 +426,7 @@ pub(super) const ROWS: &[Parameter] = &[
         inert: |s| match s.view.inset_depths {
             Some(_) => with_inset(s),
             None => {
-                Some("Black and white follow from the scene; set Black at depth to a number (view.inset_black = 0).")
+                Some("Black and white are set automatically; set Black at depth to a number (view.inset_black = 0).")
             }
         },
     },
@@ -437,8 +435,8 @@ pub(super) const ROWS: &[Parameter] = &[
         group: Group::View,
         label: "Start of shadow rays",
         unit: "m",
-        help: "Distance above the surface at which the shadow rays of the judge and of exact edges start. Surfaces that lie \
-           closer together throw no shadow on each other in truth.",
+        help: "Distance above the surface at which the shadow rays of the judge and of exact edges start. Surfaces \
+           closer together than this cast no shadow on each other in the truth.",
         kind: Kind::Number(Number {
             min: 1e-7,
             max: 10.0,
@@ -449,7 +447,7 @@ pub(super) const ROWS: &[Parameter] = &[
                 option: ChoiceOption {
                     id: "automatic",
                     label: "Automatic",
-                    help: "A millimetre; less in a model below 2 m, more where coordinates exceed 1 km.",
+                    help: "1 mm; less in a model below 2 m, more if coordinates exceed 1 km.",
                 },
                 initial: 1e-3,
             }),
@@ -462,8 +460,8 @@ pub(super) const ROWS: &[Parameter] = &[
         group: Group::View,
         label: "Outside view beside",
         unit: "",
-        help: "Shows the view from outside beside the picture: the camera's frustum, the boxes of the maps, and the casters \
-           that are in none of them.",
+        help: "Shows the view from outside beside the picture: the camera's frustum, the boxes of the maps, and the \
+           casters that are in no map.",
         kind: Kind::Toggle,
         field: field!(view.outside_beside),
         inert: always_active,
@@ -473,7 +471,7 @@ pub(super) const ROWS: &[Parameter] = &[
         group: Group::View,
         label: "Freeze the fit",
         unit: "",
-        help: "Keeps the shadow maps where they look now while the camera flies on, to see from elsewhere what they \
+        help: "Keeps the current shadow maps while the camera flies on, so that you can see from elsewhere what they \
            cover.",
         kind: Kind::Toggle,
         field: field!(view.freeze_fit),
@@ -491,24 +489,24 @@ pub(super) const ROWS: &[Parameter] = &[
     },
 ];
 
-/// Greatest number of a light or camera of a file that can be chosen: more than files have.
+/// Greatest number of a file's light or camera that can be chosen, more than any file has.
 const MOST_OF_A_FILE: f64 = 1e6;
 
-/// Why the angles have no effect, or `None` where they have one.
+/// Returns why the angles have no effect, or `None` if they have one.
 fn by_angles(s: &Settings) -> Option<&'static str> {
-    s.light.hour.map(|_| "The sun stands where the time of day says; set Time of day to By angles.")
+    s.light.hour.map(|_| "The time of day places the sun; set Time of day to By angles.")
 }
 
-/// Why the depths of insets have no effect, or `None` where they have one.
+/// Returns why the depths of insets have no effect, or `None` if they have one.
 fn with_inset(s: &Settings) -> Option<&'static str> {
     let is_shown = s.view.inset != InsetMaps::Off || s.view.mode == ViewMode::Updates;
     (!is_shown).then_some("No map is shown; turn on Shadow map inset, or set View to Map updates.")
 }
 
-/// An angle as a compass shows it, 0 to 2π: the azimuth of an animated sun is kept in -π to π, and settings that were
-/// filled by hand may have any.
+/// Returns an angle as a compass shows it, 0 to 2π. The azimuth of an animated sun lies in -π to π, and
+/// settings from a file may hold any angle.
 fn turn(radians: f64) -> f64 {
-    // 2π in f32 is a little more than a turn, and setting 360 degrees should read 360.
+    // 2π in f32 exceeds a full turn slightly. An angle that was set to 360 degrees should read as 360.
     const TOLERANCE: f64 = 1e-6;
     if (0.0..=TAU + TOLERANCE).contains(&radians) { radians } else { radians.rem_euclid(TAU) }
 }

@@ -1,4 +1,4 @@
-//! Rows that say where they have no effect.
+//! Rows whose settings have no effect, and the reasons that they give.
 
 use shadowfit::glam::{DVec3, Vec3};
 use shadowfit::settings::{FitSettings, RectangleKind, Shape};
@@ -8,8 +8,8 @@ use shadowfit_params::{Group, Kind, Value, set_from_str};
 
 use crate::{SLICES, change, row, with};
 
-/// Checks that a parameter of cascades has an effect with some values, and says with a word why it has none once
-/// another one is set.
+/// Checks that a parameter of cascades has an effect with some values, and gives a reason with this word once
+/// another parameter is set.
 fn loses_its_effect(id: &str, base: &[(&str, &str)], (other, option): (&str, &str), word: &str) {
     let mut settings = with(&[&[SLICES], base].concat());
     assert_eq!((row(id).inert)(&settings), None, "{id}");
@@ -41,7 +41,8 @@ fn what_only_some_filters_and_formats_use_says_where_it_has_no_effect() {
 
 #[test]
 fn parameters_say_where_they_have_no_effect() {
-    // Parameter, settings of cascades with which it has an effect, one that takes it away, and a word of the reason.
+    // Parameter, cascade settings with which it has an effect, a setting that removes the effect, and a word
+    // of the reason.
     for (id, base, (other, option), word) in [
         ("fit.rectangle", &[][..], ("fit.kind", "xna_sample"), "focused"),
         ("fit.rectangle", &[], ("fit.kind", "frustum_aabb"), "focused"),
@@ -110,21 +111,21 @@ fn a_parameter_that_says_it_has_no_effect_has_none_and_the_others_have_one() {
         FitInput { receivers: Some(boxes), casters: Some(boxes), ..FitInput::new(&views, Vec3::new(0.4, -0.7, 0.3)) };
     let map = |settings: &Settings| {
         let mut storage = [Default::default(); Scratch::required(3, 1)];
-        // What all windows together hold.
+        // The area that all windows together cover.
         let whole = Shape::default().with_rectangle(RectangleKind::AxisAligned);
         let shape = settings.technique.maps.shape().unwrap_or(whole);
         let settings = FitSettings { shape, map: settings.technique.fit };
         shadowfit::fit_scene(&input, &settings, &mut Scratch::new(&mut storage)).expect("a fit")
     };
     let Kind::Choice(kinds) = row("fit.kind").kind else { panic!("fits are options") };
-    // y alone is up already, at any length.
+    // y is the up direction already, at any length.
     let others = ["fit.kind", "fit.up_y"];
     for kind in kinds {
         for parameter in Group::Fit.parameters().filter(|parameter| !others.contains(&parameter.id)) {
             let mut settings = with(&[("fit.kind", kind.id)]);
             let before = map(&settings);
             let reason = (parameter.inert)(&settings);
-            // A limit that this view is sure to exceed.
+            // A limit that this view certainly exceeds.
             if parameter.id == "fit.max_texel_ratio" {
                 parameter.set(&mut settings, Value::Number(1.0));
             } else {

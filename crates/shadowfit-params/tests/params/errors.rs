@@ -1,4 +1,4 @@
-//! What is refused, and what broken values come to.
+//! Rejected values, and settings that are out of range.
 
 use shadowfit::Maps;
 use shadowfit::glam::{UVec2, Vec3};
@@ -23,7 +23,7 @@ fn numbers_clamp_and_ignore_what_is_not_finite() {
         }
         for (value, bound) in [(-1e30, min), (1e30, max)] {
             let read = parameter.number(&set(value)).expect("a number");
-            // f32 and the radians round the bound.
+            // f32 and the conversion to radians round the bound.
             assert!((read - bound).abs() <= 1e-6 * bound.abs(), "{} = {read}", parameter.id);
         }
     }

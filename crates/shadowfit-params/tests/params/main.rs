@@ -1,4 +1,4 @@
-//! The parameter table is complete and safe to drive from files and command lines.
+//! The parameter table is complete, and safe to use from files and command lines.
 
 use shadowfit_params::tool::Settings;
 use shadowfit_params::{self as params, Kind, Number, Parameter, Value, format_value, set_from_str};
@@ -25,7 +25,7 @@ fn with(values: &[(&str, &str)]) -> Settings {
     settings
 }
 
-/// Settings that between them have every row.
+/// Returns settings that together contain every row.
 fn starts() -> [Settings; 5] {
     [
         Settings::default(),
@@ -36,16 +36,16 @@ fn starts() -> [Settings; 5] {
     ]
 }
 
-/// Settings in which the row exists.
+/// Returns settings in which the row exists.
 fn settings_with(parameter: &Parameter) -> Settings {
     starts().into_iter().find(|start| parameter.is_present(start)).expect(parameter.id)
 }
 
-/// Gives the parameter a value that is not its present one, where the settings have the row.
+/// Gives the parameter another value, if the settings have the row.
 fn change(settings: &mut Settings, parameter: &Parameter) {
     let before = parameter.get(settings);
     let values = match &parameter.kind {
-        // Near where a panel begins: the middle of a range may be beyond all that matters.
+        // Near a panel's initial value, since the middle of a range may have no effect.
         Kind::Number(Number { unset: Some(unset), step, max, .. }) => [unset.initial + step, *max].map(Value::Number),
         Kind::Number(Number { min, max, .. }) => [0.5 * (min + max), *max].map(Value::Number),
         Kind::Choice(_) => [0, 1].map(Value::Option),

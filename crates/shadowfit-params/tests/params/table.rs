@@ -1,4 +1,4 @@
-//! The rows: their ids and words, the field that each one reaches, and those that move one another.
+//! The rows: their ids and texts, the field of each, and the rows that change one another.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Debug;
@@ -16,10 +16,11 @@ use shadowfit_params::{
 
 use crate::{SLICES, change, row, settings_with, starts, with, written};
 
-/// Every field of the settings by its path, with what it holds: the lines of what the settings print as.
+/// Returns every field of the settings by its path, with its value, parsed from the lines of the debug
+/// output.
 fn leaves(settings: &Settings) -> BTreeMap<String, String> {
     let mut leaves = BTreeMap::new();
-    // The names and the counts of lines of what is open.
+    // The names of the open structs and lists, with the number of their lines.
     let mut path: Vec<(String, usize)> = Vec::new();
     for line in format!("{settings:#?}").lines().skip(1).map(str::trim) {
         if line.ends_with(['}', ']', ')', ',']) && line.starts_with(['}', ']', ')']) {
@@ -98,7 +99,7 @@ fn rows_of_a_technique_change_nothing_but_the_technique() {
     }
 }
 
-/// Checks the options of a choice and what each of them sets.
+/// Checks the options of a choice and the value that each of them sets.
 fn check<T: PartialEq + Debug>(id: &str, get: fn(&Technique) -> T, expected: &[(&str, T)]) {
     let Kind::Choice(options) = &row(id).kind else { panic!("{id} is no choice") };
     let ids: Vec<&str> = options.iter().map(|option| option.id).collect();
@@ -276,7 +277,7 @@ fn softness_keeps_its_width_when_it_is_measured_otherwise() {
         assert!((width(&settings) / before - 1.0).abs() < 1e-6, "{measure}");
     }
     assert!((written(&settings, row("softness.metres")).parse::<f32>().expect("a number") - before).abs() < 1e-6);
-    // No sun of the table's is as large as the widest edges in metres; what is set can be read back.
+    // The widest edges in metres exceed the table's largest sun. The value that is set can be read back.
     let widest = with(&[("softness.measure", "metres"), ("softness.metres", "10"), ("softness.measure", "sun_angle")]);
     assert_eq!(widest, with(&[("softness.angle", &written(&widest, row("softness.angle")))]));
 }

@@ -1,4 +1,4 @@
-//! Values as text: what is written is read back to the bit.
+//! Values as text are read back to the bit.
 
 use proptest::prelude::*;
 use shadowfit::{PRESETS, Technique};
@@ -28,7 +28,7 @@ fn values_survive_text_to_the_bit() {
     }
 }
 
-/// Checks that a row's value is read back as it was written.
+/// Checks that a row's text is read back as the same value.
 fn survives_text(settings: &Settings, parameter: &Parameter) {
     let text = written(settings, parameter);
     let mut restored = *settings;
@@ -53,7 +53,7 @@ fn all_defaults_survive_text_in_any_order() {
         let set = |settings: &mut Settings, parameter: &'static Parameter| {
             set_from_str(settings, parameter.id, &written(&defaults, parameter)).map_err(|error| error.to_string())
         };
-        // A row that only another one brings about waits for it.
+        // A row that only exists after another one is set waits for it.
         let waiting: Vec<_> = there().rev().filter(|parameter| set(&mut backward, parameter).is_err()).collect();
         for parameter in waiting {
             set(&mut backward, parameter).expect(parameter.id);
@@ -62,7 +62,7 @@ fn all_defaults_survive_text_in_any_order() {
     }
 }
 
-/// The technique that its rows, written in the order of the table, make of the default one.
+/// Returns the default technique after reading the rows of another one, written in table order.
 fn restored(technique: &Technique) -> Technique {
     let settings = Settings::default().with_technique(*technique);
     let mut restored = Technique::default();
@@ -72,13 +72,13 @@ fn restored(technique: &Technique) -> Technique {
     restored
 }
 
-/// A technique whose rows have values by these numbers, 0..=1, one for each row.
+/// Returns a technique with values given as numbers, 0..=1, one for each row.
 fn technique_by(shares: &[f64]) -> Technique {
     let mut settings = Settings::default();
     for (parameter, share) in technique_parameters().zip(shares) {
         let value = match &parameter.kind {
             Kind::Number(Number { unset: Some(_), .. }) if *share < 0.3 => Value::Unset,
-            // Many of the values that matter are small.
+            // Many relevant values are small.
             Kind::Number(Number { min, max, .. }) => Value::Number(min + share.powi(4) * (max - min)),
             Kind::Choice(options) => Value::Option(((share * options.len() as f64) as usize).min(options.len() - 1)),
             Kind::Toggle => Value::Toggle(*share < 0.5),
@@ -89,7 +89,7 @@ fn technique_by(shares: &[f64]) -> Technique {
 }
 
 proptest! {
-    /// What saved files rely on.
+    /// Saved files rely on this.
     #[test]
     fn rows_written_in_order_restore_any_technique(
         shares in prop::collection::vec(0.0..=1.0_f64, technique_parameters().count())

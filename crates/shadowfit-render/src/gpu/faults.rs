@@ -1,4 +1,4 @@
-//! What may go wrong with a device that is open: it has no memory left, refuses something, or is lost.
+//! Faults of an open device: it is out of memory, refuses something, or is lost.
 
 use core::fmt;
 use std::cell::RefCell;
@@ -8,15 +8,15 @@ use std::sync::{Arc, Mutex, PoisonError};
 use crate::Gpu;
 use crate::wait::making;
 
-/// Most faults that wait to be taken: one often brings others in each frame.
+/// Greatest number of faults that wait to be taken. One fault often causes others in each frame.
 const MOST_FAULTS: usize = 8;
 
-/// Why a device did not do something.
+/// Reason why a device failed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum DeviceFault {
-    /// It has not enough memory, with its own words.
+    /// The device is out of memory, with its own message.
     OutOfMemory(String),
-    /// It was asked for what it cannot do, with its own words.
+    /// The device was asked for something unsupported or invalid, with its own message.
     Refused(String),
 }
 
@@ -40,10 +40,10 @@ impl From<wgpu::Error> for DeviceFault {
     }
 }
 
-/// What became known of a device from elsewhere than where it was used.
+/// Faults of a device that were reported asynchronously.
 #[derive(Debug, Default)]
 pub(crate) struct Faults {
-    /// Those that nothing else reports, until they are taken.
+    /// Faults that are reported nowhere else, until they are taken.
     kept: Vec<DeviceFault>,
     lost: Option<String>,
 }
@@ -52,7 +52,7 @@ fn with<T>(faults: &Mutex<Faults>, work: impl FnOnce(&mut Faults) -> T) -> T {
     work(&mut faults.lock().unwrap_or_else(PoisonError::into_inner))
 }
 
-/// Notes when a device is lost.
+/// Records the loss of a device.
 pub(crate) fn watched(device: &wgpu::Device) -> Arc<Mutex<Faults>> {
     let faults = Arc::new(Mutex::new(Faults::default()));
     let sink = Arc::clone(&faults);
@@ -68,12 +68,12 @@ fn is_lost(faults: &Mutex<Faults>) -> bool {
 }
 
 std::thread_local! {
-    /// Those of the device that this thread does work [unless it is lost](Gpu::unless_lost) with.
+    /// Faults of the device that this thread is using in [`Gpu::unless_lost`].
     static IN_USE: RefCell<Option<Arc<Mutex<Faults>>>> = const { RefCell::new(None) };
 }
 
-/// Panics that [`Gpu::unless_lost`] takes for the loss of a device print nothing from now on. All others go to the hook that
-/// was set before.
+/// Silences panics that [`Gpu::unless_lost`] takes for the loss of a device. All other panics go to the
+/// previous hook.
 pub fn hush_lost_devices() {
     let others = std::panic::take_hook();
     std::panic::set_hook(Box::new(move |panic| {
@@ -86,18 +86,18 @@ pub fn hush_lost_devices() {
 }
 
 impl Gpu {
-    /// Why the device was lost; `None` while it works.
+    /// Returns the reason for the loss of the device; `None` while it works.
     pub fn lost(&self) -> Option<String> {
         let told = || with(&self.faults, |faults| faults.lost.clone());
         told().or_else(|| {
-            // A device that was destroyed tells only somebody who asks.
+            // A destroyed device reports its loss only when it is polled.
             let _ = self.unless_lost(|| self.device.poll(wgpu::PollType::Poll));
             told()
         })
     }
 
-    /// Does work that may find the device lost; `None` where it does. wgpu 30 panics then where it polls, and so does what
-    /// takes it for granted that a device gives it what it asks for. Any other panic goes on.
+    /// Runs work that may find the device lost, and returns `None` if it was. In that case wgpu 30 panics
+    /// when it polls, and so does code that relies on a working device. Any other panic is passed on.
     pub fn unless_lost<T>(&self, work: impl FnOnce() -> T) -> Option<T> {
         let outer = IN_USE.replace(Some(Arc::clone(&self.faults)));
         let done = catch_unwind(AssertUnwindSafe(work));
@@ -109,7 +109,7 @@ impl Gpu {
         }
     }
 
-    /// From now on faults of the device do not end the program, and wait for [`Self::take_faults`].
+    /// Keeps future faults of the device for [`Self::take_faults`], instead of ending the program.
     pub fn keep_faults(&self) {
         let sink = Arc::clone(&self.faults);
         self.device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
@@ -121,20 +121,20 @@ impl Gpu {
         }));
     }
 
-    /// Takes the faults since the last call, the first one first. Those of a lost device follow from its loss, and are left
-    /// out.
+    /// Takes the faults since the last call, in order. Faults of a lost device only follow from its loss and
+    /// are left out.
     pub fn take_faults(&self) -> Vec<DeviceFault> {
         let is_lost = self.lost().is_some();
         let kept = with(&self.faults, |faults| std::mem::take(&mut faults.kept));
         if is_lost { Vec::new() } else { kept }
     }
 
-    /// Makes something that the device may have no memory for. WebGPU in browsers reports that later, to the device's own
-    /// handler.
+    /// Creates something that may exceed the device's memory. In browsers WebGPU reports this later, to the
+    /// device's own handler.
     ///
     /// # Errors
     ///
-    /// [`DeviceFault`]; the result is dropped.
+    /// [`DeviceFault`]. The result is then dropped.
     pub fn try_making<T>(&self, make: impl FnOnce() -> T) -> Result<T, DeviceFault> {
         Ok(shadowfit_gpu::catch_errors(&self.device, || making(make))?)
     }
@@ -149,7 +149,7 @@ mod tests {
         pollster::block_on(Gpu::headless(&AdapterChoice::Software)).expect("the software adapter")
     }
 
-    /// A buffer whose usages exclude each other.
+    /// Creates a buffer whose usages exclude each other.
     fn impossible(gpu: &Gpu) -> wgpu::Buffer {
         gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("impossible"),

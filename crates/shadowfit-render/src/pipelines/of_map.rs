@@ -19,14 +19,14 @@ use crate::unrolled::Numbering;
 use crate::wait::making;
 use crate::{Overlay, shaders};
 
-/// What the parts of a scene are drawn as.
+/// Kind of drawing of a scene's parts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum Drawn {
     /// A picture with an overlay.
     Shaded(Overlay),
     /// A probe.
     Probe,
-    /// The depths and normals that edges are traced from, with this number of samples per pixel.
+    /// The depths and normals for tracing edges, with this number of samples per pixel.
     Surfaces(u32),
 }
 
@@ -35,12 +35,12 @@ pub(crate) enum Drawn {
 pub(crate) struct MapPipelines {
     pub(crate) inset: wgpu::RenderPipeline,
     caster: wgpu::RenderPipeline,
-    /// Of parts with a surface of one element and of one for each vertex.
+    /// For parts with one surface element in all, and with one for each vertex.
     caster_masked: [wgpu::RenderPipeline; 2],
-    /// Made when the first part is drawn that needs it.
+    /// Created when a part first needs it.
     parts: HashMap<(Drawn, PartKey), wgpu::RenderPipeline>,
     modules: HashMap<Drawn, wgpu::ShaderModule>,
-    /// Made for the first block of texels that is read.
+    /// Created for the first block of texels that is read.
     block: Option<wgpu::RenderPipeline>,
     samples: u32,
 }
@@ -55,7 +55,7 @@ impl MapPipelines {
             (true, false) => "fs_caster_color",
             (true, true) => "fs_caster_clamped_color",
         };
-        // What neither is cut out nor computes a depth or a colour needs no fragment stage.
+        // Casters without cut-outs, computed depth or colour need no fragment stage.
         let plain_entry = Some(entry).filter(|entry| *entry != "fs_caster");
         let caster_pipeline =
             |entry, masked, surface| maker.caster(&caster_layout, &caster, entry, masked, surface, map);
@@ -70,7 +70,7 @@ impl MapPipelines {
         }
     }
 
-    /// Makes those pipelines that parts need to be drawn and that are not there yet.
+    /// Creates the missing pipelines for drawing parts.
     pub(crate) fn add(
         &mut self,
         device: &wgpu::Device,
@@ -100,18 +100,18 @@ impl MapPipelines {
         self.parts.extend(keys.into_iter().map(|key| (drawn, key)).zip(made));
     }
 
-    /// Pipeline that [`Self::add`] has made for a part.
+    /// Returns the pipeline of a part, created by [`Self::add`].
     pub(crate) fn part(&self, part: &Part, drawn: Drawn) -> &wgpu::RenderPipeline {
         &self.parts[&(drawn, PartKey::of(part))]
     }
 
-    /// Pipeline of the pass that reads a block of texels.
+    /// Returns the pipeline of the pass that reads a block of texels.
     pub(crate) fn block(&mut self, device: &wgpu::Device, layouts: &Layouts, map: &ShadowMap) -> &wgpu::RenderPipeline {
         let maker = Maker { device, samples: self.samples };
         self.block.get_or_insert_with(|| maker.block(layouts, map))
     }
 
-    /// Pipeline of the shadow pass. Casters are double-sided.
+    /// Returns the pipeline of the shadow pass. Casters are double-sided.
     pub(crate) fn caster(&self, part: &Part) -> &wgpu::RenderPipeline {
         match part.casting {
             Casting::CutOut(_) => &self.caster_masked[usize::from(part.has.surface)],
@@ -131,7 +131,7 @@ impl Maker<'_> {
         self.module("parts", source)
     }
 
-    /// The pipeline of parts with a key.
+    /// Creates the pipeline of parts with a key.
     fn part(
         &self,
         layout: &wgpu::PipelineLayout,

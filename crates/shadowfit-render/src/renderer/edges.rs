@@ -1,4 +1,5 @@
-//! Exact edges: the surfaces of a picture are drawn before it, and rays are traced where the maps are not sure.
+//! Exact edges: the surfaces of a picture are drawn first, and rays are traced where texels are not in
+//! agreement.
 
 use shadowfit::DepthConvention;
 use shadowfit_wgpu::exact_edges::{
@@ -41,7 +42,7 @@ struct Surfaces {
     extent: Extent,
     depth: wgpu::TextureView,
     normals: wgpu::TextureView,
-    /// What normals of several samples are drawn into.
+    /// Multisampled normals, resolved into `normals`.
     multisampled: Option<wgpu::TextureView>,
 }
 
@@ -84,24 +85,25 @@ impl Surfaces {
 }
 
 impl Renderer {
-    /// How the edges of the last picture or probe came out.
+    /// Returns how the edges of the last picture or probe were drawn.
     pub fn edge_result(&self) -> EdgeOutcome {
         self.edges.result
     }
 
-    /// How many pixels of a picture or probe a frame or two back were traced; `None` before the first.
+    /// Returns how many pixels of a recent picture or probe were traced, a frame or two late; `None` before
+    /// the first one.
     pub fn edge_counts(&self) -> Option<EdgeCounts> {
         self.edges.counts
     }
 
-    /// The counts of the newest picture or probe that the GPU has finished, given once.
+    /// Returns the counts of the newest picture or probe that the GPU has finished, once.
     pub fn take_edge_counts(&mut self) -> Option<EdgeCounts> {
         let counts = self.edges.pass.take_counts();
         self.edges.counts = counts.or(self.edges.counts);
         counts
     }
 
-    /// Traces the edges of a picture of the given size, if the shadow map asks for it and the scene has
+    /// Traces the edges of a picture of the given size, if the shadow map requests it and the scene has
     /// [rays](GpuScene::make_rays).
     pub(super) fn trace_edges(
         &mut self,
@@ -120,13 +122,14 @@ impl Renderer {
         if self.edges.result != self.edges.pass.result() {
             self.edges.pass.skip();
         }
-        if self.bound_factors != *self.edges.factors() {
-            self.bound_factors = self.edges.factors().clone();
+        let factors = frame.factors.unwrap_or_else(|| self.edges.factors());
+        if self.bound_factors != *factors {
+            self.bound_factors = factors.clone();
             self.lit_group = lit_group(&gpu.device, &self.layouts, &self.frame_uniform, &self.bound_factors);
         }
     }
 
-    /// Why a picture needs no pass before it, if so.
+    /// Returns the reason why a picture's edges are filtered, if they are.
     fn reason_to_filter(&self, scene: &GpuScene, frame: &Frame<'_>) -> Option<FallbackReason> {
         let descriptor: &ShadowMapDescriptor = self.sun.map().descriptor();
         if !descriptor.edges.are_traced() {
@@ -136,7 +139,7 @@ impl Renderer {
         } else if scene.rays().is_none() {
             Some(FallbackReason::Rays)
         } else {
-            (!frame.shadows).then_some(FallbackReason::Picture)
+            (!frame.shadows || frame.factors.is_some()).then_some(FallbackReason::Picture)
         }
     }
 

@@ -1,7 +1,7 @@
-//! What the maps hold, so that maps that would come out the same are not drawn again.
+//! Known content of the maps, so that maps that would not change are not drawn again.
 //!
-//! Everything that decides what is drawn into a map is compared: the maps, the light, the pose of the scene, the view
-//! that casters are culled by, and the layers themselves.
+//! It compares all inputs of drawing a map: the maps, the light, the pose of the scene, the view that casters
+//! are culled by, and the layers themselves.
 
 use glam::{DVec3, Vec3};
 use shadowfit::{Camera, FittedMap};
@@ -12,7 +12,7 @@ use crate::frame::Frame;
 use crate::scene::GpuScene;
 use crate::statistics::MapStatistics;
 
-/// What was drawn into the maps last.
+/// Inputs of the last drawing into the maps.
 #[derive(Debug)]
 pub(super) struct KnownMaps {
     maps: Vec<FittedMap>,
@@ -21,7 +21,7 @@ pub(super) struct KnownMaps {
     reader: (DVec3, Vec3),
     culling: Culling,
     pose: u64,
-    /// That of the layers which were drawn into.
+    /// Bind group of the layers that were drawn into.
     layers: wgpu::BindGroup,
     drawn: [MapStatistics; MAX_MAPS],
 }
@@ -36,7 +36,7 @@ impl KnownMaps {
 }
 
 impl Renderer {
-    /// The frame, whose maps [stay](Frame::maps_stay) where they may and nothing in them would change.
+    /// Returns the frame. If its maps may [stay](Frame::maps_stay) and would not change, they stay.
     pub(super) fn with_known_maps<'a>(&mut self, scene: &GpuScene, frame: &Frame<'a>) -> Frame<'a> {
         let layers = self.sun.receiver_group();
         let known = self.known.as_ref().filter(|known| known.layers == *layers && known.is_of(scene, frame));
@@ -45,7 +45,8 @@ impl Renderer {
         Frame { maps_stay: true, ..*frame }
     }
 
-    /// Notes what the passes of a frame draw. Kept maps are left to their cache: they cost nothing as they are.
+    /// Records what the passes of a frame draw. Cached maps are left to their cache, because they cost
+    /// nothing if unchanged.
     pub(super) fn note_maps(&mut self, scene: &GpuScene, frame: &Frame<'_>) {
         let is_kept = (0..frame.maps.len()).any(|map| self.sun.is_cached(map));
         self.known = (!is_kept).then(|| KnownMaps {

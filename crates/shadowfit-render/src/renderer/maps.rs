@@ -13,7 +13,7 @@ use crate::shaders::CASTER_GROUP;
 use crate::timer::Pass;
 
 impl Renderer {
-    /// Decides what has to be drawn into the maps, and writes the uniforms of the look-up.
+    /// Decides what to draw into the maps, and writes the uniforms of the look-up.
     pub(super) fn prepare_maps(
         &mut self,
         gpu: &Gpu,
@@ -25,7 +25,7 @@ impl Renderer {
         if frame.maps_stay {
             return self.sun.set_view(&gpu.queue, &MapView { origin, ..MapView::from_eye(eye, forward) });
         }
-        // What an invalid camera sees is unknown: maps get all casters that they can store.
+        // The view of an invalid camera is unknown, so maps get all casters that they can store.
         let seen: Option<ViewFrustum> = frame.camera.frustum().ok();
         self.sun.set_culling(if seen.is_some() { frame.culling } else { Culling::WholeMap });
         let casters: Casters<'_> = scene.casters();

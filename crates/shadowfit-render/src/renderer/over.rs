@@ -1,4 +1,4 @@
-//! What lies over the picture: marks, insets, quadrilaterals.
+//! Elements drawn over the picture: marks, insets, quadrilaterals.
 
 use super::picture::set_part;
 use super::{Plan, Renderer};
@@ -9,7 +9,7 @@ use crate::marks::{MarkPasses, PreparedMarks};
 use crate::target::RenderTarget;
 
 impl Renderer {
-    /// Draws over the resolved picture, if the frame has anything there.
+    /// Draws over the resolved picture, if the frame has such elements.
     pub(super) fn over_pass(
         &mut self,
         gpu: &Gpu,

@@ -1,4 +1,4 @@
-//! The passes that draw the scene as the camera sees it: shaded, and as a probe.
+//! The passes that draw the scene through the camera: shaded, and as a probe.
 
 use wgpu_profiler::GpuProfilerQuery;
 
@@ -17,7 +17,7 @@ const MATERIAL_GROUP: u32 = 2;
 const JUDGED_GROUP: u32 = 3;
 
 impl Renderer {
-    /// Makes what the scene's parts need to be drawn that is not there yet.
+    /// Creates missing objects for drawing the scene's parts.
     pub(super) fn prepare_parts(&mut self, gpu: &Gpu, scene: &GpuScene, drawn: Drawn) {
         let Self { layouts, judged, sun, .. } = self;
         self.pipelines.of_map.add(&gpu.device, layouts, &judged.layout, sun.map(), drawn, &scene.parts);
@@ -31,7 +31,7 @@ impl Renderer {
         plan: &Plan,
         target: &RenderTarget,
     ) {
-        // Resolving writes whole pictures: a part is resolved elsewhere, and copied.
+        // Resolving writes whole pictures. A part is therefore resolved into another texture and copied.
         let resolved = plan.part.filter(|_| target.multisampled.is_some()).map(|part| {
             let texture = self.part_texture(gpu, target.size);
             (part, texture.create_view(&Default::default()), texture)
@@ -80,7 +80,7 @@ impl Renderer {
         self.lines.draw(pass, &self.pipelines.lines, 6);
     }
 
-    /// Draws what each pixel shows and how it is lit, timed or not.
+    /// Draws the visible triangle and the shadow factor of each pixel, timed or not.
     pub(super) fn probe_pass(
         &self,
         encoder: &mut wgpu::CommandEncoder,
@@ -115,7 +115,7 @@ impl Renderer {
         }
     }
 
-    /// What a part of a picture of the given size is resolved into.
+    /// Returns the texture into which a part of a picture of the given size is resolved.
     fn part_texture(&mut self, gpu: &Gpu, [width, height]: [u32; 2]) -> wgpu::Texture {
         let kept = self.part.take().filter(|texture| (texture.width(), texture.height()) == (width, height));
         let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC;
@@ -124,7 +124,7 @@ impl Renderer {
     }
 }
 
-/// Cuts a pass to the part of the picture that is drawn.
+/// Limits a pass to the part of the picture that is drawn.
 pub(super) fn set_part(pass: &mut wgpu::RenderPass<'_>, plan: &Plan) {
     if let Some([x, y, width, height]) = plan.part {
         pass.set_scissor_rect(x, y, width, height);

@@ -1,4 +1,4 @@
-//! The facts of one pixel.
+//! The data of one pixel.
 
 use super::Renderer;
 use super::edges::Extent;
@@ -12,12 +12,12 @@ use crate::uniform::BlockUniform;
 use crate::{Gpu, bindings};
 
 impl Renderer {
-    /// Begins to read what one pixel of a frame shows, and what a map holds around a texel. The maps
-    /// [stay](Frame::maps_stay) as they were drawn last, whatever the frame says.
+    /// Starts to read the visible triangle and factor of one pixel of a frame, and the depths of a map around
+    /// a texel. The maps [stay](Frame::maps_stay) as they were drawn last, regardless of the frame's setting.
     ///
     /// # Errors
     ///
-    /// [`ProbeError`] for a camera without a direction.
+    /// [`ProbeError`] if the camera has no direction.
     pub fn probe_pixel(
         &mut self,
         gpu: &Gpu,
@@ -52,7 +52,7 @@ impl Renderer {
         Ok(read)
     }
 
-    /// Draws the depths of a block of texels of a map that there is, and copies them.
+    /// Draws the depths of a block of texels of an existing map, and copies them.
     fn block_pass(&mut self, gpu: &Gpu, encoder: &mut wgpu::CommandEncoder, block: &TexelBlock, buffer: &wgpu::Buffer) {
         let side = block.side();
         let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC;
@@ -88,7 +88,7 @@ struct Texels<'a> {
 }
 
 impl Texels<'_> {
-    /// Copies them to a buffer, in rows of [`ROW`] bytes from an offset on.
+    /// Copies the texels to a buffer, in rows of [`ROW`] bytes from an offset on.
     fn copy(&self, encoder: &mut wgpu::CommandEncoder, buffer: &wgpu::Buffer, offset: u64) {
         let Self { texture, corner: [x, y], size: [width, height] } = *self;
         encoder.copy_texture_to_buffer(

@@ -1,4 +1,4 @@
-//! What each pass of a frame draws.
+//! Draws of each pass of a frame.
 
 use glam::Mat4;
 
@@ -15,21 +15,22 @@ use shadowfit_wgpu::MAX_MAPS;
 
 /// The draws of a frame's passes.
 pub(super) struct Plan {
-    /// Of each region of each shadow pass, in their order; `None` where the maps stay.
+    /// Draws of each region of each shadow pass, in their order; `None` if the maps stay.
     pub(super) shadow: Option<Vec<Vec<CasterDraw>>>,
     pub(super) opaque: Vec<Draw>,
     pub(super) blended: Vec<Draw>,
     pub(super) overlay: Overlay,
-    /// The judged picture's bind group, where it is shown.
+    /// The judged picture's bind group, if it is shown.
     pub(super) judged: Option<wgpu::BindGroup>,
-    /// Left, top, width and height of the part that is drawn, in pixels, if it is not all of the picture.
+    /// Left, top, width and height of the part that is drawn, in pixels, unless the whole picture is drawn.
     pub(super) part: Option<[u32; 4]>,
-    /// What the shaded pass is timed as.
+    /// Timer label of the shaded pass.
     pub(super) timed: Pass,
 }
 
 impl Renderer {
-    /// Decides what each pass draws and uploads the instances. `uniform` is that of a picture of `size` pixels.
+    /// Decides what each pass draws and uploads the instances. `uniform` is the uniform of a picture of
+    /// `size` pixels.
     pub(super) fn plan(
         &mut self,
         gpu: &Gpu,
@@ -64,7 +65,7 @@ impl Renderer {
         }
     }
 
-    /// The draws of the shadow passes' regions, which are counted.
+    /// Returns the draws of the shadow passes' regions, and counts them.
     fn plan_maps(&mut self, scene: &mut GpuScene) -> Vec<Vec<CasterDraw>> {
         let mut shadow = Vec::new();
         let mut drawn = [MapStatistics::default(); MAX_MAPS];
@@ -87,7 +88,7 @@ impl Renderer {
 }
 
 impl Plan {
-    /// What the frame drew. `maps`: into the maps.
+    /// Returns the statistics of the frame. `maps` are the statistics of the shadow passes.
     pub(super) fn statistics(&self, maps: [MapStatistics; MAX_MAPS]) -> Statistics {
         Statistics {
             shadow_draws: maps.iter().map(|map| map.draws).sum(),

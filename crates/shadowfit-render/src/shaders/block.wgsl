@@ -1,4 +1,5 @@
-// The bits of depths of a block of a map's texels, one a pixel. Comes after screen.wgsl and the shadow map's WGSL.
+// Depth bits of a block of a map's texels, one texel per pixel. Comes after screen.wgsl and the shadow map's
+// WGSL.
 
 struct Block {
     // Left top texel of the block.

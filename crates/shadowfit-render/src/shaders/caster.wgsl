@@ -30,7 +30,7 @@ fn fs_caster(in: CasterOut) {
     }
 }
 
-// Where the device cannot clamp depth.
+// Used if the device cannot clamp depth.
 @fragment
 fn fs_caster_clamped(in: CasterOut) -> @builtin(frag_depth) f32 {
     if is_cut_out(in.uv, in.alpha) {

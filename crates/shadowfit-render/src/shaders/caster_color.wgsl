@@ -1,4 +1,4 @@
-// The shadow pass for colour formats: what fragments store.
+// The shadow pass for colour formats.
 
 struct CasterColor {
     @location(0) color: vec4<f32>,
@@ -13,7 +13,7 @@ fn fs_caster_color(in: CasterOut) -> @location(0) vec4<f32> {
     return shadowfit_caster_color(in.clip.z);
 }
 
-// Where the device cannot clamp depth.
+// Used if the device cannot clamp depth.
 @fragment
 fn fs_caster_clamped_color(in: CasterOut) -> CasterColor {
     if is_cut_out(in.uv, in.alpha) {

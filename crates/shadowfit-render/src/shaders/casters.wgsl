@@ -1,11 +1,12 @@
 // Surfaces by whether a map holds them as casters. Comes after overlay.wgsl.
 
-// Numbers of instances: what casts nothing, what no map holds, and what the first map holds.
+// Numbers of instances: casts no shadow, held by no map, and held by the first map.
 const CASTS_NOTHING: u32 = 0u;
 const HELD_BY_NONE: u32 = 1u;
 const HELD_BY_FIRST: u32 = 2u;
 
-// What no map holds, and the brightness of the lines over it, which tell it from a blue tint.
+// Colour of surfaces that no map holds, and the brightness of the lines over it, which distinguish it from a
+// blue tint.
 const COLD: vec3<f32> = vec3<f32>(0.17, 0.2, 0.25);
 const COLD_LINE: f32 = 0.55;
 

@@ -1,4 +1,4 @@
-// Clears a part of a picture: black, as far away as the sky. Comes after screen.wgsl.
+// Clears a part of a picture: black, at the depth of the sky. Comes after screen.wgsl.
 
 @fragment
 fn fs_clear() -> @location(0) vec4<f32> {

@@ -1,4 +1,4 @@
-// What every shader of a frame shares: the uniform and the sky's colour.
+// Shared by every shader of a frame: the uniform and the sky's colour.
 
 struct Frame {
     clip_from_world: mat4x4<f32>,
@@ -20,7 +20,7 @@ struct Frame {
 
 @group(0) @binding(0) var<uniform> frame: Frame;
 
-// Linear radiance of the sky along a unit direction, without the sun's disc.
+// Returns the linear radiance of the sky along a unit direction, without the sun's disc.
 fn sky_radiance(direction: vec3<f32>) -> vec3<f32> {
     let height = direction.y;
     let depth = 1.0 - saturate(height);
@@ -31,13 +31,14 @@ fn sky_radiance(direction: vec3<f32>) -> vec3<f32> {
     return select(below, above, height > 0.0) + glow * saturate(1.0 + height * 4.0);
 }
 
-// From the eye to a visible point, or along the view to its depth where all lines of sight are parallel.
+// Returns the vector from the eye to a visible point. With an orthographic lens, the vector along the view to
+// its depth.
 fn line_of_sight(position: vec3<f32>) -> vec3<f32> {
     let forward = frame.ray_forward.xyz;
     return select(position, forward * dot(position, forward), frame.parallel > 0.0);
 }
 
-// Distant surfaces fade into the sky behind them.
+// Fades distant surfaces into the sky behind them.
 fn with_haze(radiance: vec3<f32>, position: vec3<f32>) -> vec3<f32> {
     let sight = line_of_sight(position);
     let distance = length(sight);

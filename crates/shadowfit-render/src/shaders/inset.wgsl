@@ -33,7 +33,7 @@ fn fs_inset(in: InsetOut) -> @location(0) vec4<f32> {
     let size = vec2<f32>(textureDimensions(shadowfit_texture));
     let depth = shadowfit_stored(i32(in.map), vec2<i32>(at / in.rectangle.zw * size));
     let gray = (depth - in.depth_range.x) / (in.depth_range.y - in.depth_range.x);
-    // Squared, since the target encodes: equal depth steps are then nearly equal steps to the eye.
+    // Squared, because the target encodes: equal depth steps then look nearly equal.
     let shade = saturate(gray) * saturate(gray);
     return vec4<f32>(select(vec3<f32>(shade), in.border, border < FRAME_PIXELS), 1.0);
 }

@@ -14,14 +14,15 @@ struct LineOut {
 }
 
 const LINE_PIXELS: f32 = 2.5;
-// Lines are cut at this share of the near plane's distance: points behind the eye cannot be projected.
+// Share of the near plane's distance at which lines are clipped, because points behind the eye cannot be
+// projected.
 const LINE_NEAR: f32 = 0.2;
 
 @vertex
 fn vs_line(in: LineIn) -> LineOut {
     var start = frame.clip_from_world * vec4<f32>(in.start, 1.0);
     var end = frame.clip_from_world * vec4<f32>(in.end, 1.0);
-    // The w of an orthographic picture is 1 everywhere.
+    // In an orthographic picture w is 1 everywhere.
     let line_near = select(LINE_NEAR * frame.near, 0.0, frame.parallel > 0.0);
     let from_start = (line_near - start.w) / (end.w - start.w);
     if start.w < line_near { start = mix(start, end, saturate(from_start)); }

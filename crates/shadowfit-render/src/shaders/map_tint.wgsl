@@ -1,4 +1,4 @@
-// Surfaces in the tint of the map that they read, mixed where they read two. Comes after overlay.wgsl.
+// Surfaces in the tint of the map that they read, mixed if they read two. Comes after overlay.wgsl.
 
 fn tint_read(position: vec3<f32>) -> vec4<f32> {
     let selection = shadowfit_select(position);
@@ -16,7 +16,7 @@ fn overlaid(in: SceneOut) -> vec4<f32> {
     let surface = surface_of(in);
     let color = lit(in, surface, mapped_factor(in, surface));
     let tint = tint_read(in.position);
-    // The tint as if it were the surface's colour, with some of the picture's own.
+    // Uses the tint as the surface's colour, mixed with some of the original colour.
     let brightness = luminance(color);
     let tinted = mix(tint.rgb * (0.12 + 1.5 * brightness), color, 0.25);
     return vec4<f32>(mix(color, tinted, tint.a), opacity(surface));

@@ -1,16 +1,16 @@
-// What marks look like, which both of their passes read.
+// Style of the marks, shared by both of their passes.
 
 struct Marks {
     // Opacity, 0..1.
     strength: f32,
     // 1 for outlines, 0 for filled marks.
     outline: u32,
-    // Which classes are marked: bit i for class i.
+    // Marked classes: bit i for class i.
     classes: u32,
     padding: u32,
 }
 
 @group(GROUP) @binding(0) var<uniform> marks: Marks;
 
-// Pixels that marks reach from a wrong one.
+// Greatest distance of a mark from a wrong pixel, in pixels.
 const REACH: i32 = 7;

@@ -1,4 +1,4 @@
-// The depth buffer of a picture of several samples, of which the first is read.
+// The depth buffer of a multisampled picture. Only the first sample is read.
 
 @group(1) @binding(1) var depths: texture_depth_multisampled_2d;
 

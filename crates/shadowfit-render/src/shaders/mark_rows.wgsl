@@ -1,7 +1,7 @@
 // First pass of marks: the nearest wrong pixel in each pixel's row. Comes after screen.wgsl, judged.wgsl, mark.wgsl and
 // one of mark_depth*.wgsl.
 
-// The bits of a pixel of the frame.
+// Returns the bits of a pixel of the frame.
 fn judged_pixel(pixel: vec2<i32>, size: vec2<i32>) -> u32 {
     let at = vec2<f32>(pixel) + 0.5;
     if is_same_camera(at) {
@@ -15,7 +15,7 @@ fn judged_pixel(pixel: vec2<i32>, size: vec2<i32>) -> u32 {
     return select(0u, bits, depth > 0.0);
 }
 
-// The class of a pixel that is marked; 0 for others.
+// Returns the class of a marked pixel; 0 for other pixels.
 fn marked_class(pixel: vec2<i32>, size: vec2<i32>) -> u32 {
     if any(pixel < vec2<i32>(0)) || any(pixel >= size) {
         return 0u;
@@ -24,7 +24,7 @@ fn marked_class(pixel: vec2<i32>, size: vec2<i32>) -> u32 {
     return select(0u, kind, ((marks.classes >> kind) & 1u) != 0u);
 }
 
-// The class, shifted by four bits, plus the distance in pixels; 0 where none is near.
+// Returns the class, shifted by four bits, plus the distance in pixels; 0 if no wrong pixel is near.
 @fragment
 fn fs_mark_rows(@builtin(position) at: vec4<f32>) -> @location(0) u32 {
     let pixel = vec2<i32>(at.xy);

@@ -1,4 +1,4 @@
-// Second pass of marks: what lies within a few pixels of a wrong one. Comes after screen.wgsl, mark.wgsl and error_color.
+// Second pass of marks: draws pixels near a wrong one. Comes after screen.wgsl, mark.wgsl and error_color.
 
 // The nearest wrong pixels of the rows.
 @group(0) @binding(1) var nearest: texture_2d<u32>;
@@ -6,13 +6,14 @@
 // Distances from the nearest wrong pixel's middle between which outlines lie, in pixels.
 const INNER: f32 = 3.0;
 const OUTER: f32 = 5.0;
-// Width of the dark border on either side of an outline, which shows it on surfaces of its own colour, and its opacity.
+// Width of the dark border on either side of an outline, and its opacity. It shows outlines on surfaces of
+// the same colour.
 const BORDER: f32 = 1.0;
 const BORDER_OPACITY: f32 = 0.55;
 // Distance that filled marks reach.
 const FILLED: f32 = 1.0;
 
-// Share of a pixel that lies between two distances. at: that of its middle.
+// Returns the share of a pixel that lies between two distances. at: distance of the pixel's middle.
 fn between(low: f32, high: f32, at: f32) -> f32 {
     return saturate(at - low + 0.5) * saturate(high - at + 0.5);
 }

@@ -23,17 +23,17 @@ fn transformed_uv(rows: array<vec4<f32>, 2>, uv: vec2<f32>) -> vec2<f32> {
     return vec2<f32>(dot(rows[0].xyz, at), dot(rows[1].xyz, at));
 }
 
-// Base colour and alpha before vertex colours.
+// Returns base colour and alpha before vertex colours.
 fn base_color(uv: vec2<f32>) -> vec4<f32> {
     return material.base_color * textureSample(base_texture, base_sampler, transformed_uv(material.base_uv, uv));
 }
 
-// Whether the pipeline draws parts with cut-outs. It is a constant, since shaders that may discard run before the depth
-// test.
+// Whether the pipeline draws parts with cut-outs. It is a constant, because shaders that may discard disable
+// the early depth test.
 override MASKED: bool = false;
 
-// Whether a fragment is cut out. Alpha is read from the finest level alone: coarser ones average cut-outs away, so that
-// a far fence would vanish, and rays know no levels.
+// Returns whether a fragment is cut out. Alpha is read from the finest level only. Coarser levels would
+// average cut-outs away, so that a far fence would vanish, and rays have no mip levels.
 fn is_cut_out(uv: vec2<f32>, vertex_alpha: f32) -> bool {
     let texel = textureSampleLevel(base_texture, base_sampler, transformed_uv(material.base_uv, uv), 0.0);
     return MASKED && material.base_color.a * texel.a * vertex_alpha < material.alpha_cutoff;

@@ -1,4 +1,5 @@
-// What overlays share. Each has a function `overlaid` that colours a visible point; comes after scene.wgsl.
+// Shared by the overlays. Each overlay has a function `overlaid` that colours a visible point. Comes after
+// scene.wgsl.
 
 @fragment
 fn fs_overlay(in: SceneOut) -> @location(0) vec4<f32> {
@@ -9,17 +10,17 @@ fn fs_overlay(in: SceneOut) -> @location(0) vec4<f32> {
     return color;
 }
 
-// Brightness of a linear colour (ITU-R BT.709).
+// Returns the luminance of a linear colour (ITU-R BT.709).
 fn luminance(color: vec3<f32>) -> f32 {
     return dot(color, vec3<f32>(0.2126, 0.7152, 0.0722));
 }
 
-// Linear colour from an encoded one (sRGB).
+// Decodes an sRGB colour to a linear one.
 fn decoded(color: vec3<f32>) -> vec3<f32> {
     return select(pow((color + 0.055) / 1.055, vec3<f32>(2.4)), color / 12.92, color <= vec3<f32>(0.04045));
 }
 
-// Thin diagonal lines, 1 on a line and 0 between them, with smooth edges. pixel: in the picture.
+// Returns thin diagonal lines, 1 on a line and 0 between lines, with smooth edges. pixel: in the picture.
 fn hatching(pixel: vec2<f32>) -> f32 {
     // Pixels between two lines, measured along a row.
     let period = 8.0;
@@ -27,14 +28,15 @@ fn hatching(pixel: vec2<f32>) -> f32 {
     return saturate(1.5 - abs(place - 0.5 * period));
 }
 
-// The map that weighs more in a point's shadow, by its place in the order; -1 outside every map.
+// Returns the map with the greatest weight in a point's shadow, by its place in the order; -1 outside every
+// map.
 fn place_read(position: vec3<f32>) -> i32 {
     let selection = shadowfit_select(position);
     let is_second = selection.second >= 0 && selection.weight < 0.5;
     return select(selection.first, selection.second, is_second);
 }
 
-// Light on a surface without a colour of its own, 0..1: what shows forms and shadows under an overlay.
+// Returns the light on a surface without a colour, 0..1, to show shapes and shadows under an overlay.
 fn relief(surface: Surface, factor: f32) -> f32 {
     let facing = smoothstep(0.0, 0.08, dot(surface.geometric, frame.to_light));
     let sun = saturate(dot(surface.normal, frame.to_light)) * facing * factor;
@@ -42,14 +44,14 @@ fn relief(surface: Surface, factor: f32) -> f32 {
     return sqrt(saturate(0.18 + 0.32 * sky + 0.5 * sun));
 }
 
-// How far a point's place in a map moves from one pixel to the next, in texels.
+// Change of a point's position in a map from one pixel to the next, in texels.
 struct Footprint {
     right: vec2<f32>,
     down: vec2<f32>,
 }
 
-// How far a visible point moves on its tangent plane when its line of sight moves by `across`: at a view depth of 1 for a
-// perspective.
+// Returns how far a visible point moves on its tangent plane when its line of sight is moved by `across`; for
+// a perspective, at a view depth of 1.
 fn slide(position: vec3<f32>, normal: vec3<f32>, across: vec3<f32>) -> vec3<f32> {
     let sight = line_of_sight(position);
     let moved = across * select(dot(position, frame.ray_forward.xyz), 1.0, frame.parallel > 0.0);

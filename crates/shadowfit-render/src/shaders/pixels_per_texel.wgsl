@@ -1,15 +1,15 @@
 // Screen pixels per texel, as colours. Comes after overlay.wgsl and octave_color.
 
-// What no map covers: linear grey, and that of its hatching.
+// Linear grey of surfaces that no map covers, and of their hatching.
 const UNCOVERED: f32 = 0.12;
 const UNCOVERED_LINE: f32 = 0.3;
 
-// Along the worse axis: one over the smaller singular value of texels a pixel.
+// Returns pixels per texel along the worse axis: one over the smaller singular value of texels per pixel.
 fn pixels_per_texel(step: Footprint) -> f32 {
     let sum = length(vec2<f32>(step.right.x + step.down.y, step.right.y - step.down.x));
     let difference = length(vec2<f32>(step.right.x - step.down.y, step.right.y + step.down.x));
     let area = abs(step.right.x * step.down.y - step.right.y * step.down.x);
-    // A surface along the light has texels without end.
+    // On a surface along the light, texels are infinitely long.
     return 0.5 * (sum + difference) / max(area, 1e-20);
 }
 

@@ -1,4 +1,4 @@
-// Powers by squaring: the general pow is the dearest thing in these shaders.
+// Powers by squaring: the general pow is the most expensive operation in these shaders.
 fn pow5(x: f32) -> f32 {
     let square = x * x;
     return square * square * x;

@@ -1,4 +1,4 @@
-// The probe pass where fragments know their primitive. Comes after probe.wgsl.
+// The probe pass if fragments have a primitive index. Comes after probe.wgsl.
 
 @fragment
 fn fs_probe(in: SceneOut, @builtin(primitive_index) triangle: u32) -> @location(0) vec2<u32> {

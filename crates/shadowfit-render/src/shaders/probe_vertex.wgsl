@@ -1,4 +1,5 @@
-// The probe pass of parts that are drawn without their indices, three vertices a triangle. Comes after probe.wgsl.
+// The probe pass of parts that are drawn without indices, with three vertices per triangle. Comes after
+// probe.wgsl.
 
 @vertex
 fn vs_probe(in: SceneIn, @builtin(vertex_index) vertex: u32) -> SceneOut {

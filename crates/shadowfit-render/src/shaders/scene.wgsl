@@ -9,7 +9,7 @@ struct SceneIn {
     @location(5) row0: vec4<f32>,
     @location(6) row1: vec4<f32>,
     @location(7) row2: vec4<f32>,
-    // Of the instance: its first triangle, or for the overlay of casters the map that holds it.
+    // Number of the instance: its first triangle, or the map that holds it for the overlay of casters.
     @location(8) number: u32,
 }
 
@@ -26,7 +26,7 @@ struct SceneOut {
 fn scene_vertex(in: SceneIn) -> SceneOut {
     let local = vec4<f32>(in.position, 1.0);
     let position = vec3<f32>(dot(in.row0, local), dot(in.row1, local), dot(in.row2, local));
-    // Normals follow the cofactors of the transform, which also serve uneven and mirrored scales.
+    // Normals use the cofactors of the transform, which also handle non-uniform and mirrored scales.
     let a = in.row0.xyz;
     let b = in.row1.xyz;
     let c = in.row2.xyz;
@@ -51,14 +51,14 @@ fn vs_scene(in: SceneIn) -> SceneOut {
     return scene_vertex(in);
 }
 
-// Unit normal of the triangle itself, on the side that the eye sees. `dx`, `dy`: the derivatives
-// of the position, taken where control flow is uniform.
+// Returns the unit normal of the triangle itself, on the eye's side. `dx`, `dy`: the derivatives of the
+// position, taken in uniform control flow.
 fn geometric_normal(position: vec3<f32>, dx: vec3<f32>, dy: vec3<f32>) -> vec3<f32> {
     let normal = normalize(cross(dy, dx));
     return select(normal, -normal, dot(normal, line_of_sight(position)) > 0.0);
 }
 
-// Interpolated normal, bent by the normal map, on the side of the geometric one.
+// Returns the interpolated normal, perturbed by the normal map, on the side of the geometric normal.
 fn shading_normal(in: SceneOut, geometric: vec3<f32>, texel: vec3<f32>) -> vec3<f32> {
     let length_squared = dot(in.normal, in.normal);
     var normal = select(geometric, in.normal * inverseSqrt(max(length_squared, 1e-30)), length_squared > 1e-20);
@@ -74,7 +74,7 @@ fn shading_normal(in: SceneOut, geometric: vec3<f32>, texel: vec3<f32>) -> vec3<
     return normal;
 }
 
-// Light of sky and ground on a surface.
+// Returns the light of sky and ground on a surface.
 fn ambient(base: vec3<f32>, normal: vec3<f32>, to_eye: vec3<f32>) -> vec3<f32> {
     let up = normal.y * 0.5 + 0.5;
     let sky = mix(frame.zenith.rgb, frame.horizon.rgb, 0.55);
@@ -86,17 +86,17 @@ fn ambient(base: vec3<f32>, normal: vec3<f32>, to_eye: vec3<f32>) -> vec3<f32> {
     return base * light * (1.0 - material.metallic * 0.6) + mirrored;
 }
 
-// What shading knows of a visible point.
+// Shading inputs of a visible point.
 struct Surface {
     // Base colour and alpha.
     base: vec4<f32>,
-    // Unit normal of the triangle, on the side that the eye sees, and the one that is shaded.
+    // Unit normal of the triangle, on the eye's side, and the shading normal.
     geometric: vec3<f32>,
     normal: vec3<f32>,
     to_eye: vec3<f32>,
 }
 
-// Called where control flow is uniform: it takes derivatives.
+// Takes derivatives, so call it in uniform control flow.
 fn surface_of(in: SceneOut) -> Surface {
     let texel = textureSample(normal_texture, normal_sampler, transformed_uv(material.normal_uv, in.uv)).xyz;
     let base = base_color(in.uv) * in.color;
@@ -104,9 +104,10 @@ fn surface_of(in: SceneOut) -> Surface {
     return Surface(base, geometric, shading_normal(in, geometric, texel), -normalize(line_of_sight(in.position)));
 }
 
-// Share of the sun's light that reaches a visible point. Edges of blended surfaces are not traced.
+// Returns the share of the sun's light that reaches a visible point. Edges of blended surfaces are not
+// traced.
 fn mapped_factor(in: SceneOut, surface: Surface) -> f32 {
-    // No branch on a uniform alone: software rasterisers build a shader for each draw then.
+    // No branch depends on a uniform only: software rasterisers would compile a shader for each draw.
     var factor = select(shadowfit_stored_factor(in.clip.xy), -1.0, material.blended > 0.0);
     if factor < 0.0 {
         factor = shadowfit_factor_at(in.position, surface.geometric, in.clip.xy);
@@ -114,9 +115,9 @@ fn mapped_factor(in: SceneOut, surface: Surface) -> f32 {
     return mix(1.0, factor, frame.shadows);
 }
 
-// Colour of a visible point that a share of the sun's light reaches.
+// Returns the colour of a visible point that a share of the sun's light reaches.
 fn lit(in: SceneOut, surface: Surface, factor: f32) -> vec3<f32> {
-    // A surface that faces away from the sun is dark whatever its interpolated normal says.
+    // A surface that faces away from the sun is dark, regardless of its interpolated normal.
     let facing = smoothstep(0.0, 0.08, dot(surface.geometric, frame.to_light));
     let sunlight = frame.sun * (factor * facing);
     let radiance = reflectance(surface.base.rgb, surface.normal, surface.to_eye, frame.to_light) * sunlight
@@ -129,7 +130,7 @@ fn opacity(surface: Surface) -> f32 {
     return mix(1.0, surface.base.a, material.blended);
 }
 
-// Colour of a visible point. Called where control flow is uniform: it takes derivatives.
+// Returns the colour of a visible point. Takes derivatives, so call it in uniform control flow.
 fn shaded(in: SceneOut) -> vec4<f32> {
     let surface = surface_of(in);
     return vec4<f32>(lit(in, surface, mapped_factor(in, surface)), opacity(surface));

@@ -1,4 +1,4 @@
-// A triangle over all of the picture.
+// A triangle over the whole picture.
 
 @vertex
 fn vs_screen(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {

@@ -11,11 +11,11 @@ fn vs_sky(@builtin(vertex_index) index: u32) -> SkyVertex {
     return SkyVertex(vec4<f32>(ndc, 0.0, 1.0), ndc);
 }
 
-// The sun's disc is drawn wider than the real 0.27 degrees so that it can be found.
+// The sun's disc is larger than the real 0.27 degrees so that it is easy to find.
 const SUN_COSINE: f32 = 0.99980;
 const SUN_SOFTNESS: f32 = 0.00006;
 
-// Whether it is dim and grey: behind overlays whose colours have a meaning.
+// Whether it is dim and grey, behind overlays whose colours have a meaning.
 override GRAY: bool = false;
 
 @fragment

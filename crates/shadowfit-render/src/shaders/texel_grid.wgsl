@@ -1,19 +1,21 @@
 // The texels of the map that a point reads, drawn on its surface. Comes after overlay.wgsl.
 
-// Least width, in pixels, that is drawn: where texels are narrower, blocks of 4, 16, 64... texels a side are.
+// Smallest width that is drawn, in pixels. Narrower texels are joined to blocks of 4, 16, 64... texels per
+// side.
 const LEAST_PIXELS: f32 = 6.0;
 // Brightness of the darker texels and of the lines between texels, as a share of the brighter ones'.
 const DARKER: f32 = 0.62;
 const LINE: f32 = 0.35;
 
-// Mean over a pixel of a wave that is 1 over even texels and -1 over odd ones. width: of the pixel, in texels.
+// Mean over a pixel of a wave that is 1 over even texels and -1 over odd ones. width: of the pixel, in
+// texels.
 fn wave(at: vec2<f32>, width: vec2<f32>) -> vec2<f32> {
     let low = abs(fract((at - 0.5 * width) * 0.5) - 0.5);
     let high = abs(fract((at + 0.5 * width) * 0.5) - 0.5);
     return 2.0 * (low - high) / width;
 }
 
-// Share of a pixel that lines of one pixel's width between texels cover, by axis.
+// Share of a pixel that lines between texels cover, by axis. Lines are one pixel wide.
 fn lines(at: vec2<f32>, width: vec2<f32>) -> vec2<f32> {
     let from_line = abs(fract(at - 0.5) - 0.5) / width;
     return saturate(1.0 - from_line);

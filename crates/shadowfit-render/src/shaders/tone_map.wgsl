@@ -1,5 +1,5 @@
-// Tone curve: Khronos PBR Neutral (Khronos Group, 2024), which keeps base colours as they are and
-// rolls off only what is brighter than the display.
+// Tone curve: Khronos PBR Neutral (Khronos Group, 2024), which preserves base colours and compresses only
+// values brighter than the display.
 fn tone_map(radiance: vec3<f32>) -> vec3<f32> {
     let start = 0.8 - 0.04;
     let desaturation = 0.15;

@@ -1,7 +1,7 @@
-// The picture in grey, and in colours the pixels whose edges were traced, and what was left to the filter. Comes after
-// overlay.wgsl.
+// The picture in grey, with colours for pixels whose edges were traced and for pixels left to the filter.
+// Comes after overlay.wgsl.
 
-// Brightness of a colour in the dark, and how much more in the light.
+// Brightness of a colour in the dark, and the increase toward full light.
 const DARK: f32 = 0.3;
 const LIGHT: f32 = 0.7;
 

@@ -1,13 +1,13 @@
 // Surfaces with the shadows that rays found. Comes after overlay.wgsl and judged.wgsl.
 
-// Brightness of the hatching over what was not judged.
+// Brightness of the hatching over surfaces that were not judged.
 const HATCHING: f32 = 0.72;
 
 fn overlaid(in: SceneOut) -> vec4<f32> {
     let surface = surface_of(in);
     let mapped = mapped_factor(in, surface);
     let bits = judged_of(in.position, in.clip.xy);
-    // The judged picture shows what lies behind blended surfaces.
+    // The judged picture shows the surfaces behind blended ones.
     let is_opaque = material.blended == 0.0;
     let is_judged = is_opaque & ((bits & CLASS) != 0u);
     let truth = select(0.0, 1.0, (bits & LIT) != 0u);

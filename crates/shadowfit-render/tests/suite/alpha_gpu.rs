@@ -1,4 +1,4 @@
-//! Surfaces by their alpha: which are drawn, and which cast.
+//! Surfaces by their alpha: whether they are drawn, and whether they cast.
 
 use glam::{DVec3, Vec2, Vec3, Vec4};
 use shadowfit_scene::{AlphaMode, BlendedCasters, Image, Material, Scene, Texture, Wrap};
@@ -6,7 +6,7 @@ use shadowfit_testing::renderer_gpu;
 
 use crate::pictures::{Stage, camera, cheap_technique};
 
-/// What gives a sheet its alpha.
+/// Source of a sheet's alpha.
 #[derive(Clone, Copy, Debug)]
 enum Source {
     Factor(f32),
@@ -14,14 +14,14 @@ enum Source {
     Vertices(f32),
 }
 
-/// A square that looks up.
+/// Returns a square that faces up.
 fn square(half: f32, height: f32) -> Vec<[Vec3; 3]> {
     let [a, b, c, d] =
         [[-half, -half], [-half, half], [half, half], [half, -half]].map(|[x, z]| Vec3::new(x, height, z));
     vec![[a, b, c], [a, c, d]]
 }
 
-/// A sheet above a floor.
+/// Returns a sheet above a floor.
 fn scene(alpha: AlphaMode, source: Source) -> Scene {
     let mut scene = Scene::from_objects("sheets", &[square(6.0, 0.0), square(1.5, 1.5)]);
     let mut sheet = Material { alpha, double_sided: true, ..Material::default() };
@@ -49,7 +49,7 @@ fn picture(scene: &Scene) -> Vec<[u8; 3]> {
     stage.picture(|_| ())
 }
 
-/// Pixels of two pictures that differ by more than rounding.
+/// Returns the number of pixels of two pictures that differ by more than rounding.
 fn difference(a: &[[u8; 3]], b: &[[u8; 3]]) -> usize {
     let differs = |(a, b): &(&[u8; 3], &[u8; 3])| a.iter().zip(*b).any(|(a, b)| a.abs_diff(*b) > 1);
     a.iter().zip(b).filter(differs).count()
@@ -101,7 +101,7 @@ fn materials_of_one_geometry_draw_it_each_in_its_own_way() {
     let mut scene = scene(AlphaMode::Mask { cutoff: 0.5 }, Source::Factor(0.2));
     let twin = scene.meshes[1].primitives[0].clone();
     let alone = picture(&scene);
-    // The same triangles once more, opaque.
+    // The same triangles again, opaque.
     scene.meshes[1].primitives.push(shadowfit_scene::Primitive { material: 0, ..twin });
     let both = picture(&scene);
     scene.meshes[1].primitives.swap(0, 1);

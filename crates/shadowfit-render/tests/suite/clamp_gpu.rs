@@ -11,7 +11,7 @@ use shadowfit_wgpu::ShadowMapDescriptor;
 /// Size of the pictures, in pixels.
 const SIZE: [u32; 2] = [320, 180];
 
-/// The software adapter, opened without depth clamp.
+/// Opens the software adapter without depth clamp.
 fn without_clamp() -> Gpu {
     let gpu = renderer_gpu();
     let features = gpu.device.features() - wgpu::Features::DEPTH_CLIP_CONTROL;

@@ -1,17 +1,17 @@
-//! The tests' adapter, opened with less than it has.
+//! The tests' adapter, opened with fewer features and limits than it has.
 
 #[cfg(feature = "gles")]
 use shadowfit_render::AdapterChoice;
 use shadowfit_render::{Gpu, Wanted};
 use shadowfit_testing::renderer_gpu;
 
-/// The tests' adapter with these features and limits.
+/// Opens the tests' adapter with these features and limits.
 pub(crate) fn test_gpu(features: wgpu::Features, limits: wgpu::Limits) -> Gpu {
     opened(renderer_gpu().adapter, features, limits)
 }
 
-/// OpenGL ES 3.0 with the limits of WebGL2, by Mesa. wgpu prefers OpenGL, and Mesa later versions, unless both are told to
-/// be old by environment variables.
+/// Opens OpenGL ES 3.0 by Mesa with the limits of WebGL2. By default wgpu prefers OpenGL, and Mesa later
+/// versions. Environment variables must select old versions for both.
 #[cfg(feature = "gles")]
 pub(crate) fn webgl2_gpu() -> Gpu {
     let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle();

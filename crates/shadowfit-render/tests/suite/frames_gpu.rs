@@ -1,5 +1,5 @@
-//! What a frame can ask for beside its scene: maps that stay, parts of pictures, insets, quadrilaterals, overlays with
-//! every kind of map.
+//! Options of a frame apart from its scene: maps that stay, parts of pictures, insets, quadrilaterals, and
+//! overlays with every kind of map.
 
 use glam::{DVec3, Vec2, Vec3, Vec4};
 use shadowfit::settings::{FilterKind, MapSelection};
@@ -18,13 +18,13 @@ fn a_picture_of_maps_that_stay_is_that_of_maps_that_are_drawn() {
     let Stage { mut pictures, seen } = Stage::new(&cheap_technique(), 1);
     let alone = pictures.picture(&seen.frame());
     let stay = Frame { maps_stay: true, ..seen.frame() };
-    // Without maps: what was drawn last counts.
+    // `maps` is ignored; the last drawn maps are used.
     assert_eq!(pictures.picture(&Frame { maps: &[], ..stay }), alone);
-    // A probe draws the maps of the picture that follows.
+    // A probe draws the maps for the picture that follows.
     pictures.renderer.sun_mut().invalidate_all();
     pictures.probe(&seen.frame());
     assert_eq!(pictures.picture(&stay), alone);
-    // From another camera; both times the maps hold all their casters.
+    // From another camera. Both times the maps hold all their casters.
     let camera = PerspectiveCamera { eye: seen.camera.eye + DVec3::new(-2.0, 1.0, 1.0), ..seen.camera };
     let reader = Some((seen.camera.eye, seen.camera.forward));
     let culling = Culling::WholeMap;
@@ -33,7 +33,7 @@ fn a_picture_of_maps_that_stay_is_that_of_maps_that_are_drawn() {
     pictures.draw(&Frame { culling, ..seen.frame() });
     let stayed = pictures.picture(&Frame { maps_stay: true, ..elsewhere });
     let different = drawn.iter().zip(&stayed).filter(|(a, b)| a != b).count();
-    // Casters are rounded relative to the camera's eye when they are drawn.
+    // When casters are drawn, they are rounded relative to the camera's eye.
     assert!(different * 500 < drawn.len(), "{different} of {}", drawn.len());
 }
 
@@ -43,13 +43,13 @@ fn maps_that_may_stay_are_drawn_once_and_pictures_and_statistics_are_the_same() 
     let (drawn, alone) = (pictures.draw(&seen.frame()), pictures.read());
     let may = Frame { maps_may_stay: true, ..seen.frame() };
     assert_eq!((pictures.draw(&may), pictures.read()), (drawn, alone.clone()));
-    // Passes that are not drawn leave their times as they were.
+    // Skipped passes do not change their times.
     let times = pictures.renderer.pass_times();
     for _ in 0..3 {
         assert_eq!((pictures.draw(&may), pictures.read()), (drawn, alone.clone()));
     }
     assert!(times.shadow_ms.is_some() && pictures.renderer.pass_times() == times);
-    // Whatever decides what is drawn into the maps draws them again.
+    // Each change of an input of the maps draws them again.
     let camera = PerspectiveCamera { eye: seen.camera.eye + DVec3::new(-2.0, 1.0, 1.0), ..seen.camera };
     let moved = Frame { camera: camera.into(), ..may };
     let lit = Frame { direction: Vec3::new(-0.4, -0.6, 0.3).normalize(), ..may };
@@ -96,7 +96,8 @@ fn statistics_and_times_of_a_frame_have_what_its_probe_drew() {
 fn a_probe_of_other_maps_leaves_the_times_of_the_picture_as_they_are() {
     let Stage { mut pictures, seen } = Stage::new(&cheap_technique(), 1);
     let targets = ProbeTargets::new(&pictures.gpu.device, SIZE);
-    // Each probe ends the frame of the one before it, so that it tells of that one and of the picture.
+    // Each probe ends the frame of the previous one, so that its times cover the previous probe and the
+    // picture.
     let probe = |pictures: &mut Pictures| {
         pictures.renderer.draw_probe(&pictures.gpu, &mut pictures.scene, &seen.frame(), &targets).expect("a probe");
         targets.read(&pictures.gpu).expect("it is finished");
@@ -110,7 +111,8 @@ fn a_probe_of_other_maps_leaves_the_times_of_the_picture_as_they_are() {
         assert!(times.probe_ms.is_some() && times.scene_ms.is_some() && times.shadow_ms.is_some(), "{told:?}");
         assert_eq!(of_picture(times), of_picture(&told[1]), "{told:?}");
     }
-    // A picture that draws its maps itself is a frame without the probe; the further one tells of it.
+    // A picture that draws its maps itself is a frame without the probe. The further picture makes its times
+    // available.
     pictures.draw(&seen.frame());
     pictures.read();
     pictures.draw(&Frame { maps_stay: true, ..seen.frame() });
@@ -141,7 +143,7 @@ fn a_part_of_a_picture_is_drawn_as_in_the_whole_and_the_rest_stays() {
             let expected = if is_inside { expected[pixel] } else { before[pixel] };
             assert_eq!(*color, expected, "{samples} samples, {column} {row}");
         }
-        // Nothing to draw, and more than all of it.
+        // A part outside the picture, and a part larger than the picture.
         assert_eq!(pictures.picture(&Frame { scissor: Some([500, 2, 9, 9]), ..seen.frame() }), part);
         let all = pictures.picture(&Frame { scissor: Some([0, 0, 999, 999]), ..whole });
         assert_eq!(all, expected);
@@ -235,11 +237,11 @@ fn quadrilaterals_cover_their_pixels_and_no_others() {
     let forward = with(&[triangle], &mut pictures);
     assert_eq!(with(&[backward], &mut pictures), forward, "either way around");
     let covered = forward.iter().filter(|color| **color == full).count();
-    // Half of 40 × 40 pixels, less what the slanted side cuts.
+    // Half of 40 × 40 pixels, minus pixels that the slanted side cuts.
     assert!((740..=800).contains(&covered), "{covered}");
 }
 
-/// A technique whose look-up has the fewest branches, and one with the most.
+/// Returns the technique whose look-up has the fewest branches.
 fn fewest_branches() -> Technique {
     Technique::preset("focused-1").expect("a preset").with_resolution(256, 256).with_filter(FilterKind::Point)
 }
@@ -290,7 +292,7 @@ fn casters_that_no_map_holds_are_told_from_those_that_one_holds() {
         let face = [corner(x, 0.0, 0.0), corner(x + 1.0, 0.0, 0.0), corner(x + 1.0, 2.0, 0.0), corner(x, 2.0, 0.0)];
         vec![[face[0], face[1], face[2]], [face[0], face[2], face[3]]]
     };
-    // Two walls before the camera, of which the maps of a narrow view hold one.
+    // Two walls before the camera. The maps of a narrow view hold only one.
     let scene = Scene::from_objects("walls", &[box_at(-0.5), box_at(40.0)]);
     let technique = Technique::preset("focused-1").expect("a preset").with_resolution(256, 256);
     let Stage { mut pictures, seen } = Stage::of(&technique, 1, &scene);
@@ -304,7 +306,7 @@ fn casters_that_no_map_holds_are_told_from_those_that_one_holds() {
         pictures.picture(&frame)[SIZE[1] as usize / 2 * WIDTH + WIDTH / 2]
     };
     let [held, left_out] = [0.0, 40.5].map(|x| shown(&mut pictures, x));
-    // The first map's tint is orange, the other colour cold.
+    // The first map's tint is orange. The colour of surfaces that no map holds is bluish.
     assert!(held[0] > held[2] + 20, "{held:?}");
     assert!(left_out[2] > left_out[0], "{left_out:?}");
 }

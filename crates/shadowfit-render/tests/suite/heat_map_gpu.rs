@@ -1,5 +1,5 @@
-//! The overlays of pixels per texel and of texels: colours against the diagnostics of the core, on a plane and on the
-//! built-in scene.
+//! The overlays of pixels per texel and of texels, compared with the core's diagnostics, on a plane and on
+//! the built-in scene.
 
 use glam::{UVec2, Vec3};
 use shadowfit::settings::FilterKind;
@@ -14,7 +14,7 @@ use super::pictures::{Pictures, SIZE, Seen, Stage, encoded, linear};
 /// Levels by which a colour may differ: rounding of the picture, and a step of the scale.
 const LEVELS: f32 = 1.5;
 
-/// Share by which pixels per texel may differ that are more than that.
+/// Relative difference that is allowed for pixels per texel.
 const SHARE: f32 = 0.02;
 
 /// Returns a preset with at most two maps and the cheapest filter, which these overlays do not depend on.
@@ -23,7 +23,8 @@ fn technique(preset: &str) -> Technique {
     if technique.maps.count() > 2 { technique.with_count(2) } else { technique }
 }
 
-/// How much a colour differs from one that is darkened by the same factor in all channels, in levels.
+/// Returns the difference of a colour from an expected one that may be darkened by one factor in all
+/// channels, in levels.
 fn difference(color: [u8; 3], expected: [u8; 3]) -> f32 {
     let [color_light, light] = [color, expected].map(|color| Vec3::from(color.map(linear)));
     let factor = color_light.dot(light) / light.length_squared();
@@ -31,7 +32,7 @@ fn difference(color: [u8; 3], expected: [u8; 3]) -> f32 {
     (0..3).map(|i| (darkened[i] - f32::from(color[i])).abs()).fold(0.0, f32::max)
 }
 
-/// Pixels per texel that the core finds at each pixel; `None` where there is no surface or no map.
+/// Returns the core's pixels per texel at each pixel; `None` without a surface or a map.
 fn expected(pictures: &mut Pictures, seen: &Seen) -> Vec<Option<f32>> {
     let probe = pictures.probe(&seen.frame());
     let camera = &seen.camera;
@@ -53,8 +54,8 @@ fn expected(pictures: &mut Pictures, seen: &Seen) -> Vec<Option<f32>> {
 struct Counts {
     same: usize,
     different: usize,
-    /// Of the different ones those that may be: a border between two maps passes their middles within half a step of the
-    /// adapter's corners, so that the picture may read the other map.
+    /// Number of different pixels that are allowed: a border between two maps passes their middles within
+    /// half a step of the adapter's corners, so that the picture may read the other map.
     allowed: usize,
 }
 
@@ -68,10 +69,10 @@ fn compare(technique: &Technique, scene: Option<Scene>) -> Counts {
     let (mut same, mut different) = (0, 0);
     for (pixel, color) in drawn.into_iter().enumerate() {
         let Some(figure) = expected[pixel] else { continue };
-        // The corners of the surface lie up to a step beside their places, which moves its points by as much.
+        // The corners of the surface may lie up to a step from their exact positions, and its points too.
         let slope = slope(&expected, pixel).unwrap_or(0.0);
         let allowed = SHARE * figure + step * slope;
-        // Colours change in bands, so that those of the ends alone may both be others.
+        // Colours change in bands, so the colours of the two ends alone may both differ.
         let nearby = (-4_i8..=4).map(|part| figure + allowed * f32::from(part) / 4.0);
         let least = nearby.map(|figure| difference(color, pixels_per_texel_color(figure))).fold(f32::MAX, f32::min);
         *(if least > LEVELS { &mut different } else { &mut same }) += 1;
@@ -80,14 +81,14 @@ fn compare(technique: &Technique, scene: Option<Scene>) -> Counts {
     Counts { same, different, allowed: (borders as f32 * step) as usize }
 }
 
-/// Whether the pixel below reads another map. Its figure is then more than twice or less than half as large, which it is
-/// nowhere within one map.
+/// Returns whether the pixel below reads another map. Its figure is then more than twice or less than half as
+/// large, which never happens within one map.
 fn is_above_a_border(expected: &[Option<f32>], pixel: usize) -> bool {
     let below = expected.get(pixel + SIZE[0] as usize).copied().flatten();
     expected[pixel].zip(below).is_some_and(|(above, below)| above.min(below) < 0.5 * above.max(below))
 }
 
-/// Change of the figure to the pixels above and below, per pixel.
+/// Returns the change of the figure to the pixels above and below, per pixel.
 fn slope(expected: &[Option<f32>], pixel: usize) -> Option<f32> {
     let width = SIZE[0] as usize;
     let beside = [pixel.checked_sub(width), Some(pixel + width)];
@@ -119,7 +120,7 @@ fn pixels_per_texel_of_the_scene_are_those_of_the_diagnostics() {
     }
 }
 
-/// Greatest difference of each pixel from the one beside it, in levels.
+/// Returns the greatest difference of each pixel from the next one in its row, in levels.
 fn steps(picture: &[[u8; 3]], rows: core::ops::Range<usize>) -> Vec<u8> {
     let width = SIZE[0] as usize;
     let in_rows = (rows.start * width..rows.end * width - 1).filter(|pixel| pixel % width != width - 1);
@@ -138,7 +139,7 @@ fn texels_show_where_they_are_wide_and_blocks_of_them_where_they_are_not() {
         let large = steps.iter().filter(|step| **step > 12).count();
         println!("{resolution}: {large} of {}", steps.len());
         assert!(large * 20 > steps.len(), "{resolution}: there is no grid, {large} of {}", steps.len());
-        // Nothing narrower than six pixels is drawn, which has two steps and a line of two more at most.
+        // The narrowest cells are six pixels wide, with at most two steps and a line of two more steps.
         assert!(large * 3 < steps.len() * 2, "{resolution}: the grid is finer than pixels, {large} of {}", steps.len());
     }
 }

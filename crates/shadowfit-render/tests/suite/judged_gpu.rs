@@ -1,4 +1,5 @@
-//! Judged pictures: each surface shows the class of its own pixel, and of the pixel that showed it to another camera.
+//! Judged pictures: each surface shows the class of its own pixel, or of the pixel that showed it to another
+//! camera.
 
 use glam::{DVec2, DVec3, UVec2};
 use shadowfit::{DepthConvention, PerspectiveCamera};
@@ -18,7 +19,7 @@ fn judged<'a>(classes: &'a wgpu::TextureView, camera: &PerspectiveCamera) -> Jud
     JudgedPicture { classes, size: SIZE, camera: camera.into(), depth: None }
 }
 
-/// The class whose colour a pixel has; `None` for grey.
+/// Returns the class of a pixel's colour; `None` for grey.
 fn class_of([r, g, b]: [u8; 3]) -> Option<u32> {
     let is_gray = r.abs_diff(g) <= 1 && g.abs_diff(b) <= 1;
     let near = |color: &[u8; 3]| color.iter().zip([r, g, b]).all(|(a, b)| a.abs_diff(b) <= 1);
@@ -52,7 +53,7 @@ fn through_another_camera_every_surface_has_the_class_of_the_pixel_that_showed_i
     let frame_before = Frame { camera: before.into(), ..seen.frame() };
     let shown =
         pictures.renderer.probe(&pictures.gpu, &mut pictures.scene, &frame_before, &of_before).expect("a probe");
-    // Each triangle has a class of its own.
+    // Each triangle has its own class.
     let class = |triangle: u32| 2 + triangle.wrapping_mul(0x9E37_79B1) % 7 % 4;
     let bits: Vec<u32> = shown.pixels.iter().map(|pixel| pixel.map_or(0, |pixel| class(pixel.triangle))).collect();
     let view = classes_texture(&pictures.gpu, &bits, SIZE);
@@ -62,7 +63,7 @@ fn through_another_camera_every_surface_has_the_class_of_the_pixel_that_showed_i
     let frame = Frame { overlay: Overlay::Error, judged: Some(judged), ..seen.frame() };
     let picture = pictures.picture(&frame);
     let clip = before.clip_from_world(DepthConvention::Reversed).as_dmat4();
-    // A hundredth of a pixel for f32, and a step for the corners of either picture.
+    // A hundredth of a pixel for f32, and a step for the corners of each picture.
     let border = 0.012 + 2.0 * f64::from(subpixel_step(&pictures.gpu.adapter.get_info()));
     let [mut right, mut lost] = [0; 2];
     for (pixel, (color, probed)) in picture.into_iter().zip(&probe.pixels).enumerate() {
@@ -82,12 +83,12 @@ fn through_another_camera_every_surface_has_the_class_of_the_pixel_that_showed_i
                 assert_eq!(found, bits[there], "{place}");
                 right += 1;
             }
-            // Surfaces that another one hid have no class; those that the camera saw have one.
+            // Hidden surfaces have no class. Surfaces that were visible to the judged camera have one.
             None => lost += usize::from(shown.pixels[there].is_some_and(|there| there.triangle == probed.triangle)),
         }
     }
     println!("{right} right, {lost} lost");
-    // Borders of steps of 1/16 pixel leave out half of the pixels.
+    // Borders of steps of 1/16 pixel exclude half of the pixels.
     assert!(right > PIXELS / 4 && lost * 100 < right, "{right} and {lost}");
 }
 
@@ -109,7 +110,7 @@ fn truth_shades_with_the_light_of_rays_and_with_that_of_the_maps_where_nothing_w
     for (((dark, lit), plain), unjudged) in dark.iter().zip(&lit).zip(&plain).zip(&unjudged) {
         assert!(luminance(*dark) <= luminance(*lit) + 0.01);
         darker += usize::from(luminance(*dark) < 0.8 * luminance(*lit));
-        // Hatching darkens, and nothing else differs from the maps' picture.
+        // Hatching darkens. Apart from it, the picture equals the maps' picture.
         assert!(luminance(*unjudged) <= luminance(*plain) + 0.01);
         hatched += usize::from(unjudged != plain);
     }
@@ -117,7 +118,7 @@ fn truth_shades_with_the_light_of_rays_and_with_that_of_the_maps_where_nothing_w
     assert!(darker > PIXELS / 4 && hatched > PIXELS / 20 && hatched < PIXELS / 2, "{darker} and {hatched}");
 }
 
-/// The one wrong pixel of a picture with marks; it shows a surface.
+/// The only wrong pixel of a picture with marks. It shows a surface.
 const MARKED: usize = 60 * SIZE[0] as usize + 70;
 
 /// Draws a picture with marks of one wrong pixel.
@@ -126,12 +127,12 @@ fn marked(stage: &mut Stage, marks: Marks, same_camera: bool) -> Vec<[u8; 3]> {
     drawn[MARKED] = 3;
     let Stage { pictures, seen } = stage;
     let view = classes_texture(&pictures.gpu, &drawn, SIZE);
-    // A camera that sees the same and is not the same.
+    // A different camera with the same picture.
     let camera = PerspectiveCamera { far: if same_camera { seen.camera.far } else { 130.0 }, ..seen.camera };
     pictures.picture(&Frame { marks: Some(marks), judged: Some(judged(&view, &camera)), ..seen.frame() })
 }
 
-/// Distance of a pixel from another one.
+/// Returns the distance between two pixels.
 fn distance(pixel: usize, other: usize) -> f64 {
     let width = SIZE[0] as usize;
     let [x, y] = [(pixel % width).abs_diff(other % width), (pixel / width).abs_diff(other / width)];

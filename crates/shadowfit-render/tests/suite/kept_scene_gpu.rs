@@ -1,4 +1,4 @@
-//! A scene with an animation, drawn with maps that are kept and with maps that are drawn anew: the pictures are the same.
+//! An animated scene, drawn with kept maps and with newly drawn maps, gives the same pictures.
 
 use glam::{DVec3, Vec3};
 use shadowfit::settings::FilterKind;
@@ -11,12 +11,13 @@ use shadowfit_wgpu::ShadowMapDescriptor;
 /// Size of the pictures, in pixels.
 const SIZE: [u32; 2] = [160, 90];
 
-/// Least difference of two values of a pixel, in levels, that counts, and the greatest share of such values: edges of shadows
-/// that were drawn a frame earlier, where matrix rounding differs.
+/// Smallest difference of two values of a pixel that counts, in levels, and the greatest allowed share of
+/// such values. They occur at edges of shadows that were drawn a frame earlier, where matrix rounding
+/// differs.
 const DIFFERENT: u8 = 12;
 const DIFFERENT_SHARE: f64 = 2e-4;
 
-/// Frames that the figure walks.
+/// Number of frames in which the figure walks.
 const FRAMES: u8 = 12;
 
 fn camera(frame: u8) -> PerspectiveCamera {

@@ -1,4 +1,4 @@
-//! The renderer's Rust structs against naga's reflection of the WGSL that reads them.
+//! The renderer's Rust structs, compared with naga's reflection of the WGSL that reads them.
 
 use core::mem::offset_of;
 
@@ -15,7 +15,8 @@ use shadowfit_wgpu::ShadowMapDescriptor;
 /// Uniforms whose layouts the tests below compare.
 const COMPARED: [&str; 5] = ["Frame", "Material", "Judged", "Marks", "Block"];
 
-/// Asserts that the layout of every uniform of a module is compared: here, or in shadowfit-wgpu, whose names have a prefix.
+/// Asserts that a test compares the layout of every uniform of a module, here or in shadowfit-wgpu, whose
+/// names have a prefix.
 pub(crate) fn assert_uniforms_are_compared(shader: &Shader) {
     for uniform in shader.uniform_structs() {
         let is_compared = COMPARED.contains(&uniform.as_str()) || uniform.starts_with("shadowfit_");

@@ -1,4 +1,4 @@
-//! Devices of no features with the limits of WebGL2 draw what others draw.
+//! Devices without features and with the limits of WebGL2 draw the same pictures as other devices.
 
 use glam::DVec3;
 use shadowfit_render::{Overlay, PixelQuery, TexelBlock};

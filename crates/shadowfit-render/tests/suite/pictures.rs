@@ -43,8 +43,9 @@ pub(crate) struct Stage {
     pub(crate) seen: Seen,
 }
 
-/// Returns a technique for tests of anything but maps and their look-up: software drivers compile the look-up into one map
-/// in half a second, into four maps in four seconds and into eight in eleven, with wider filters in more.
+/// Returns a technique for tests that do not depend on maps and their look-up. Software drivers compile the
+/// look-up into one map in half a second, into four maps in four seconds and into eight in eleven, with wider
+/// filters in more.
 pub(crate) fn cheap_technique() -> Technique {
     Technique::default().with_count(1).with_resolution(256, 256).with_filter(FilterKind::Hardware2x2)
 }
@@ -84,18 +85,18 @@ impl Seen {
 }
 
 impl Stage {
-    /// The built-in scene from its default camera.
+    /// Creates a stage of the built-in scene from its default camera.
     pub(crate) fn new(technique: &Technique, samples: u32) -> Self {
         Self::of(technique, samples, &default_scene())
     }
 
-    /// A scene from the built-in scene's default camera.
+    /// Creates a stage of a scene from the built-in scene's default camera.
     pub(crate) fn of(technique: &Technique, samples: u32, scene: &Scene) -> Self {
         let (eye, target) = default_camera();
         Self::on(renderer_gpu(), technique, samples, scene, camera(eye.as_dvec3(), target.as_dvec3()))
     }
 
-    /// A scene at rest on a device, in pictures with `samples` samples per pixel.
+    /// Creates a stage of a scene in its rest pose on a device, with `samples` samples per pixel.
     pub(crate) fn on(gpu: Gpu, technique: &Technique, samples: u32, scene: &Scene, camera: PerspectiveCamera) -> Self {
         let renderer = Renderer::new(&gpu, &ShadowMapDescriptor::from(technique), samples).expect("a renderer");
         let pose = scene.pose(None, 0.0);
@@ -110,7 +111,7 @@ impl Stage {
         self.pictures.probe(&self.seen.frame())
     }
 
-    /// Returns the facts of a pixel, with the depths around a texel.
+    /// Returns the data of a pixel, with the depths around a texel.
     pub(crate) fn pixel(&mut self, query: &PixelQuery) -> PixelFacts {
         self.pictures.pixel(&self.seen.frame(), query)
     }
@@ -163,7 +164,7 @@ impl Pictures {
         self.renderer.probe(&self.gpu, &mut self.scene, frame, &targets).expect("a probe")
     }
 
-    /// Returns the facts of a pixel.
+    /// Returns the data of a pixel.
     pub(crate) fn pixel(&mut self, frame: &Frame<'_>, query: &PixelQuery) -> PixelFacts {
         let mut read = self.renderer.probe_pixel(&self.gpu, &mut self.scene, frame, query).expect("a question");
         self.gpu.device.poll(wgpu::PollType::wait_indefinitely()).expect("the device answers");
@@ -214,7 +215,7 @@ pub(crate) fn encoded(linear: f32) -> f32 {
     255.0 * if linear <= 0.003_130_8 { linear * 12.92 } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
 }
 
-/// Returns numbers below a bound that look random.
+/// Returns pseudorandom numbers below a bound.
 pub(crate) fn random(count: usize, below: u32) -> impl Iterator<Item = u32> {
     (0..count as u64).map(move |index| {
         let mixed = (index + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15);

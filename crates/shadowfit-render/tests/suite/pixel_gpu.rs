@@ -1,5 +1,6 @@
-//! One pixel's facts: what a probe of the whole picture has there, and the depths that a map holds, in every format and
-//! wherever the map is stored. And the rectangles that a frame says it drew: nothing else of a map changes.
+//! The data of one pixel: it equals a probe of the whole picture there, and the depths that a map holds, in
+//! every format and wherever the map is stored. Also, a kept map changes only in the rectangles that a frame
+//! reports as drawn.
 
 use glam::{DVec3, UVec2};
 use shadowfit::scroll::TexelRect;
@@ -12,21 +13,21 @@ use shadowfit_wgpu::ShadowMap;
 
 use super::pictures::{Pictures, SIZE, Seen, Stage, random};
 
-/// Texels of the maps, each way: those of smaller ones are cheaper drawn anew than in strips.
+/// Width and height of the maps, in texels. In smaller maps a full redraw would be cheaper than strips.
 const SIDE: u32 = 512;
 
 fn technique(format: MapFormat) -> Technique {
     Technique::default().with_count(1).with_resolution(SIDE, SIDE).with_format(format).with_filter(FilterKind::Point)
 }
 
-/// What each layer of a map stores, as its texture has it, in bytes.
+/// Returns the bytes of each layer of a map's texture.
 fn layers(gpu: &Gpu, map: &ShadowMap) -> Vec<Vec<u8>> {
     let texture = map.view().texture();
     let bytes = read_back::bytes(&gpu.device, &gpu.queue, texture);
     bytes.chunks(bytes.len() / texture.depth_or_array_layers() as usize).map(<[u8]>::to_vec).collect()
 }
 
-/// The depth that bytes of a format stand for.
+/// Decodes a depth from the bytes of a format.
 fn depth(format: MapFormat, bytes: &[u8]) -> f32 {
     match (format, bytes) {
         (MapFormat::R8Grey, [byte]) => f32::from(*byte) / 255.0,
@@ -53,13 +54,13 @@ fn a_pixel_has_the_facts_that_a_probe_of_the_whole_picture_has_there() {
         surfaces += usize::from(facts.seen.is_some());
     }
     assert!(surfaces > 10, "{surfaces}");
-    // Beside the picture the nearest pixel is meant, and a map that is not there has no depths.
+    // Beyond the picture the nearest pixel is used, and a missing map has no depths.
     let texels = Some(TexelBlock { map: 7, texel: [0, 0], radius: 2 });
     let facts = pictures.pixel(&seen.frame(), &PixelQuery { size: SIZE, pixel: [9999, 9999], texels });
     assert_eq!((facts.seen, facts.depths), (*whole.pixels.last().expect("pixels"), Vec::new()));
 }
 
-/// Compares blocks of texels with what the layers hold.
+/// Compares blocks of texels with the content of the layers.
 fn assert_depths(pictures: &mut Pictures, seen: &Seen, format: MapFormat) {
     let stored = layers(&pictures.gpu, pictures.renderer.shadow_map());
     let bytes = stored[0].len() / (SIDE * SIDE) as usize;
@@ -90,7 +91,7 @@ fn texels_around_a_pixel_are_those_of_the_map_in_every_format() {
     }
 }
 
-/// Steps of a camera that walks, in metres.
+/// Step of a walking camera, in metres.
 const STEP: DVec3 = DVec3::new(0.35, 0.0, -0.25);
 
 #[test]

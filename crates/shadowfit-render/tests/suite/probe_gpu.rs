@@ -1,4 +1,4 @@
-//! Probes are the same whether fragments know their primitive or vertices number the triangles.
+//! Probes are the same whether fragments have a primitive index or vertices number the triangles.
 
 use glam::DVec3;
 use shadowfit_render::Probe;
@@ -9,13 +9,13 @@ use super::devices::test_gpu;
 use super::pictures::{Stage, camera, cheap_technique};
 use super::sheets::sheets;
 
-/// A scene at rest on a device with the features.
+/// Creates a stage of a scene in its rest pose on a device with the features.
 fn stage(features: wgpu::Features, scene: &Scene, eye: DVec3) -> Stage {
     let gpu = test_gpu(features, wgpu::Limits::default());
     Stage::on(gpu, &cheap_technique().with_resolution(512, 512), 1, scene, camera(eye, DVec3::Y))
 }
 
-/// Compares texel by texel; returns the number of triangles that are seen.
+/// Compares texel by texel. Returns the number of visible triangles.
 fn assert_same([indexed, unrolled]: [&Probe; 2], name: &str) -> usize {
     let mut triangles = std::collections::BTreeSet::new();
     for (index, (a, b)) in indexed.pixels.iter().zip(&unrolled.pixels).enumerate() {

@@ -1,4 +1,4 @@
-//! A scene with all that parts of scenes can be: bent by a morph target or a skin, with holes, of glass, mirrored.
+//! A scene with all kinds of parts: deformed by a morph target or a skin, with holes, of glass, mirrored.
 
 use glam::{Mat4, Quat, Vec2, Vec3, Vec4};
 use shadowfit_scene::{
@@ -13,7 +13,7 @@ const GLASS: usize = 2;
 /// Cells along a sheet.
 const CELLS: u32 = 6;
 
-/// Sheets above a floor.
+/// Returns sheets above a floor.
 pub(crate) fn sheets() -> Scene {
     let mesh = |primitive| Mesh { primitives: vec![primitive], ..Mesh::default() };
     let meshes = vec![
@@ -42,7 +42,7 @@ fn node(mesh: Option<usize>, place: [f32; 3], scale: [f32; 3]) -> Node {
     Node { mesh, rest, ..Node::default() }
 }
 
-/// A square of two metres that looks up, whose triangles share vertices.
+/// Returns a square of two metres that faces up, whose triangles share vertices.
 fn sheet(material: usize) -> Primitive {
     let side = CELLS + 1;
     let corners = (0..side * side).map(|index| Vec2::new((index % side) as f32, (index / side) as f32) / CELLS as f32);
@@ -65,7 +65,7 @@ fn morphed() -> Primitive {
     primitive
 }
 
-/// Each half follows a joint.
+/// Returns a sheet of which each half follows a joint.
 fn skinned() -> Primitive {
     let mut primitive = sheet(PLAIN);
     primitive.weights = primitive.uvs.iter().map(|uv| Vec4::new(1.0 - uv.x, uv.x, 0.0, 0.0)).collect();
@@ -86,7 +86,7 @@ fn materials() -> Vec<Material> {
     vec![plain, holes, glass]
 }
 
-/// Every other texel is a hole.
+/// Returns an image in which every other texel is a hole.
 fn holes() -> Image {
     let rgba = (0..16).flat_map(|index| [200, 120, 60, if (index + index / 4) % 2 == 0 { 255 } else { 0 }]).collect();
     Image { name: "holes".to_owned(), width: 4, height: 4, rgba }

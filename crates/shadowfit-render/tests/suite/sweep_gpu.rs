@@ -1,5 +1,5 @@
-//! Casters that are left out because their shadows are not seen: the shadow factor of every pixel stays the same to the
-//! last bit, and fewer casters are drawn.
+//! Culling of casters with invisible shadows: the shadow factor of every pixel stays bit-identical, and fewer
+//! casters are drawn.
 
 use std::path::PathBuf;
 
@@ -29,17 +29,17 @@ const TEXELS: u32 = 512;
 /// The light's directions of travel: high, half-way up, and grazing the ground.
 const DIRECTIONS: [Vec3; 3] = [Vec3::new(0.2, -1.0, 0.1), Vec3::new(0.5, -0.6, -0.4), Vec3::new(-0.9, -0.2, 0.3)];
 
-/// Where the town is looked at from, in metres.
+/// Eye of the town's view, in metres.
 const TOWN_EYE: Vec3 = Vec3::new(-6.0, 5.0, 30.0);
 
-/// Maps and how they are read.
+/// Maps and the way they are read.
 struct Case {
     name: &'static str,
     technique: Technique,
     filter: FilterKind,
     format: MapFormat,
     bias: fn(&LightProjection, FilterKind) -> Bias,
-    /// Whether all but the last map leave out the sides of their slices, as the fits of other code may.
+    /// Whether all maps except the last leave out the sides of their slices, as fits of other code may.
     is_narrow: bool,
 }
 
@@ -55,7 +55,7 @@ fn away_from_the_light(_: &LightProjection, _: FilterKind) -> Bias {
     Bias::fixed(-XNA_DEPTH_BIAS).expect("a bias")
 }
 
-/// Returns the cases with `count` maps, but for the one map of one of them.
+/// Returns the cases with `count` maps, except for one case with a single map.
 fn cases(count: u32) -> Vec<Case> {
     let maps = |kind, splits, stabilise, casters| {
         let fit = MapSettings { casters, resolution: UVec2::splat(TEXELS), ..MapSettings::default() };
@@ -113,7 +113,7 @@ fn cases(count: u32) -> Vec<Case> {
     all
 }
 
-/// A scene and a place to look at it from.
+/// A scene and a camera position.
 struct View {
     name: &'static str,
     scene: Scene,
@@ -134,14 +134,14 @@ fn views() -> [View; 2] {
     ]
 }
 
-/// Blocks of many heights on a ground of tiles.
+/// Returns blocks of many heights on a ground of tiles.
 fn town() -> Vec<Vec<[Vec3; 3]>> {
     let mut objects = Vec::new();
     for i in 0..400_i16 {
         let share = |step: f32| (f32::from(i) * step).fract();
         let (x, z) = (share(0.754_877_7) * 120.0 - 60.0, share(0.569_840_3) * 120.0 - 60.0);
         let half = Vec3::new(0.3 + share(0.37) * 1.2, 0.5 + share(0.19).powi(4) * 9.0, 0.3 + share(0.83) * 1.2);
-        // None around the eye.
+        // No blocks around the eye.
         if Vec3::new(x, TOWN_EYE.y, z).distance(TOWN_EYE) > 6.0 {
             objects.push(solid(Vec3::new(x, half.y, z), half));
         }
@@ -178,7 +178,7 @@ fn camera(view: &View) -> PerspectiveCamera {
     }
 }
 
-/// The world boxes of all instances, in metres.
+/// Returns the world boxes of all instances, in metres.
 fn boxes(scene: &Scene, gpu_scene: &GpuScene) -> Vec<Aabb> {
     let bounds = (0..scene.instances().len()).filter_map(|index| gpu_scene.instance_bounds(index));
     bounds.map(|bounds| Aabb::new(bounds.min, bounds.max)).collect()
@@ -198,7 +198,7 @@ fn descriptor(case: &Case) -> ShadowMapDescriptor {
     }
 }
 
-/// The maps of a case, fitted to what the camera sees of the boxes.
+/// Fits the maps of a case to the boxes in the camera's view.
 fn fitted(case: &Case, camera: &PerspectiveCamera, boxes: &[Aabb], direction: Vec3) -> Vec<FittedMap> {
     let frustum = camera.frustum().expect("a camera");
     let boxes = Boxes { origin: DVec3::ZERO, boxes };
@@ -256,20 +256,20 @@ impl Shown {
     }
 }
 
-/// Pixels whose factors differ.
+/// Returns the number of pixels whose factors differ.
 fn different(one: &[Option<ProbePixel>], other: &[Option<ProbePixel>]) -> usize {
     let bits = |pixel: &Option<ProbePixel>| pixel.map(|pixel| (pixel.triangle, pixel.factor.to_bits()));
     one.iter().zip(other).filter(|(a, b)| bits(a) != bits(b)).count()
 }
 
-/// Casters of a case's frames with the sweep, and without it.
+/// Casters of a case's frames with and without swept culling.
 #[derive(Default)]
 struct Counted {
     swept: usize,
     whole: usize,
 }
 
-/// Compares a case's frame with and without the sweep, and counts the casters.
+/// Compares a case's frame with and without swept culling, and counts the casters.
 fn compare(gpu: &Gpu, renderer: &mut Renderer, case: &Case, shown: &mut Shown, direction: Vec3, counted: &mut Counted) {
     let camera = camera(&shown.view);
     let maps = fitted(case, &camera, &shown.boxes, direction);
@@ -356,7 +356,7 @@ fn from_other_eyes(gpu: &Gpu, atmosphere: &Atmosphere, case: &Case) {
     }
 }
 
-/// Returns a folder beside the workspace that holds data of others, or `None` with a note if it is missing.
+/// Returns a folder beside the workspace with external data, or `None` with a note if it is missing.
 fn shared(name: &str) -> Option<PathBuf> {
     let folder = package_folder(env!("CARGO_MANIFEST_DIR")).join("../../../shared").join(name);
     if !folder.is_dir() {
@@ -381,7 +381,7 @@ fn real_scenes_get_the_same_factor_in_every_pixel() {
             GpuScene::new(&gpu, &material_layout(&gpu.device), &scene, &scene.pose(None, 0.0)).expect("memory");
         let boxes = boxes(&scene, &gpu_scene);
         for (case, renderer) in &mut renderers {
-            // One frame of each path, a third of it in.
+            // One frame of each path, a third of the way along it.
             for frame in scenarios.frames.iter().filter(|frame| frame.scene == index && frame.frame == 7) {
                 let (camera, direction) = (frame.camera(), DVec3::from_array(frame.light_dir).as_vec3());
                 let maps = fitted(case, &camera, &boxes, direction);

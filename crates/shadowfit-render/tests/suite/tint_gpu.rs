@@ -1,5 +1,5 @@
-//! The overlay that tints surfaces by the map that they read: each pixel of a plane has the colour of the map that a
-//! computation here finds for it.
+//! The overlay that tints surfaces by the map that they read. Each pixel of a plane has the colour of the map
+//! that this test computes for it.
 
 use glam::{DVec2, DVec3, Vec3};
 use shadowfit::selection::DepthRange;
@@ -14,9 +14,9 @@ use shadowfit_testing::renderer_gpu;
 
 /// Size of the picture, in pixels.
 const SIZE: [u32; 2] = [160, 90];
-/// View depths at which all maps but the last end, in metres.
+/// View depths at which all maps except the last end, in metres.
 const ENDS: [f32; 7] = [3.0, 4.0, 5.5, 7.5, 10.0, 14.0, 20.0];
-/// View depth at which the last map ends, in metres: the floor goes on behind it.
+/// View depth at which the last map ends, in metres. The floor continues behind it.
 const LAST_END: f32 = 28.0;
 /// The light's direction of travel.
 const DIRECTION: Vec3 = Vec3::new(0.48, -0.8, -0.36);
@@ -33,7 +33,7 @@ fn camera() -> PerspectiveCamera {
     }
 }
 
-/// Fits `count` maps to the camera's view. The floor goes on behind the last one.
+/// Fits `count` maps to the camera's view. The floor continues behind the last one.
 fn maps(camera: &PerspectiveCamera, count: u32) -> Vec<FittedMap> {
     let cascades = Technique::preset("calm-4").expect("a preset");
     let mut settings =
@@ -48,7 +48,7 @@ fn maps(camera: &PerspectiveCamera, count: u32) -> Vec<FittedMap> {
     fitted.iter().map(map).collect()
 }
 
-/// What the floor's point behind a position in the picture reads, in pixels.
+/// Result of reading the floor's point behind a position in the picture, in pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Seen {
     /// A map, by its index.
@@ -87,7 +87,7 @@ struct Floor {
 }
 
 impl Floor {
-    /// `maps`: number of maps that a frame may have.
+    /// Creates a floor. `maps` is the greatest number of maps in a frame.
     fn new(maps: u32) -> Self {
         let gpu = renderer_gpu();
         let descriptor = ShadowMapDescriptor {
@@ -116,7 +116,7 @@ impl Floor {
     }
 }
 
-/// A linear colour from sRGB bytes.
+/// Returns a linear colour from sRGB bytes.
 fn linear(bytes: [u8; 3]) -> Vec3 {
     Vec3::from(bytes.map(|byte| {
         let encoded = f32::from(byte) / 255.0;
@@ -124,7 +124,7 @@ fn linear(bytes: [u8; 3]) -> Vec3 {
     }))
 }
 
-/// The map in whose tint a colour is shown; `None` where it is as it was.
+/// Returns the map whose tint a colour has; `None` if the colour is unchanged.
 fn tint_of(plain: Vec3, tinted: Vec3) -> Option<usize> {
     let luminance = plain.dot(Vec3::new(0.2126, 0.7152, 0.0722));
     let shown = |map: usize| linear(MAP_TINTS[map]) * (0.12 + 1.5 * luminance) * 0.75 + plain * 0.25;
@@ -178,7 +178,7 @@ fn tints_are_told_apart_and_lit_and_shadowed_stay_apart_under_each() {
     }
     let camera = camera();
     let maps = maps(&camera, 4);
-    // The same floor, in the shadow of nothing and of everything: a bias beyond the map's depth puts it there.
+    // The same floor, fully lit and fully shadowed: a bias beyond the map's depth puts it in shadow.
     let shadowed: Vec<FittedMap> =
         maps.iter().map(|map| FittedMap { bias: Bias { constant_depth: -1.0, ..Bias::default() }, ..*map }).collect();
     let mut floor = Floor::new(4);

@@ -1,5 +1,6 @@
-//! OpenGL ES 3.0, which WebGL2 is, draws what Vulkan draws. To be run with
-//! `MESA_GL_VERSION_OVERRIDE=3.2 MESA_GLES_VERSION_OVERRIDE=3.0 cargo test -p shadowfit-render --features gles webgl2`.
+//! OpenGL ES 3.0, which corresponds to WebGL2, draws the same pictures as Vulkan. Run it with
+//! `MESA_GL_VERSION_OVERRIDE=3.2 MESA_GLES_VERSION_OVERRIDE=3.0 cargo test -p shadowfit-render --features
+//! gles webgl2`.
 
 use glam::{DVec3, Vec3, Vec4};
 use shadowfit::settings::{FilterKind, MapFormat};
@@ -13,12 +14,12 @@ use super::sheets::sheets;
 
 const EYE: DVec3 = DVec3::new(1.0, 4.0, 6.0);
 
-/// Software drivers take seconds to build the look-up into more maps.
+/// Returns a technique with two maps, because software drivers take seconds to compile the look-up into more.
 fn technique() -> Technique {
     Technique::default().with_count(2).with_resolution(1024, 1024)
 }
 
-/// The sheets on Vulkan and on OpenGL.
+/// Returns the sheets on Vulkan and on OpenGL.
 fn both(technique: &Technique, samples: u32) -> [Stage; 2] {
     let vulkan = test_gpu(wgpu::Features::empty(), wgpu::Limits::default());
     [vulkan, webgl2_gpu()].map(|gpu| Stage::on(gpu, technique, samples, &sheets(), camera(EYE, DVec3::Y)))
@@ -69,7 +70,8 @@ const fn inset(map: u32) -> Inset {
 
 #[test]
 fn maps_of_any_number_are_drawn() {
-    // wgpu's OpenGL makes no array of a single layer, nor of six, which two sets of three maps are, too.
+    // wgpu's OpenGL backend makes no array texture of one layer or of six, and two sets of three maps have
+    // six.
     for (count, cross_fades) in [(1, false), (6, false), (3, true)] {
         let mut stages = both(&technique().with_count(count), 1);
         for Stage { pictures, .. } in &mut stages {

@@ -1,5 +1,5 @@
-//! The renderer's WGSL: every file is used, every module is valid and has its passes' entry points, and WebGL2 can draw with
-//! the modules that it is given.
+//! The renderer's WGSL: every file is used, every module is valid and has its passes' entry points, and
+//! WebGL2 can draw with its modules.
 
 use std::sync::LazyLock;
 
@@ -21,8 +21,8 @@ pub(crate) struct Module {
     pub(crate) shader: Shader,
     stages: &'static [ShaderStage],
     needed: Capabilities,
-    /// Whether WebGL2 draws with it. WebGL2 has neither primitive indices nor depths as numbers, and draws other modules
-    /// than other backends where pixels or texels are loaded.
+    /// Whether WebGL2 draws with it. WebGL2 has neither primitive indices nor depths as numbers. It uses
+    /// other modules than other backends for loading pixels or texels.
     is_for_webgl2: bool,
 }
 
@@ -32,7 +32,7 @@ impl Module {
         Self { shader, stages: &[Vertex, Fragment], needed: Capabilities::empty(), is_for_webgl2: true }
     }
 
-    /// Checks everything that the tests below state of a module.
+    /// Checks everything that the tests below require of a module.
     fn check(&self) {
         self.shader.assert_valid(self.needed);
         self.shader.assert_has_stages(self.stages);
@@ -90,11 +90,11 @@ impl Kind {
     }
 }
 
-/// Values of a shadow map that its WGSL differs for.
+/// Values of a shadow map that change its WGSL.
 const DEPTHS: [DepthConvention; 2] = [DepthConvention::ZeroToOne, DepthConvention::Reversed];
 const SELECTIONS: [fn() -> MapSelection; 2] = [MapSelection::default, || MapSelection::ViewDepth { overlap: 0.0 }];
 
-/// Numbers of kinds of modules, formats, filters, depths, selections, and of cross fades.
+/// Returns the numbers of kinds of modules, formats, filters, depths, selections, and of cross fades.
 fn counts() -> [usize; 6] {
     [Kind::all().len(), MapFormat::ALL.len(), FilterKind::ALL.len(), DEPTHS.len(), SELECTIONS.len(), 2]
 }
@@ -113,7 +113,7 @@ fn looked_up(row: &[usize]) -> Module {
     Kind::all()[kind].module(&map)
 }
 
-/// Modules that look up no shadow map.
+/// Returns the modules that look up no shadow map.
 fn others() -> Vec<Module> {
     let mut all: Vec<Module> = [
         ("sky", shaders::sky()),
@@ -126,7 +126,6 @@ fn others() -> Vec<Module> {
     ]
     .map(|(name, source)| Module::new(name, source))
     .into();
-    // Depth alone, from vertices.
     all.push(Module { stages: &[Vertex], ..Module::new("clear", shaders::clear()) });
     let multisampled = Module::new("mark rows of four samples", shaders::mark_rows(4));
     all.push(Module { is_for_webgl2: false, ..multisampled });
@@ -135,7 +134,7 @@ fn others() -> Vec<Module> {
     all
 }
 
-/// Every module of the renderer, with every pair of values that the look-up's WGSL differs for.
+/// Every module of the renderer, with every pair of values that change the look-up's WGSL.
 static MODULES: LazyLock<Vec<Module>> = LazyLock::new(|| {
     let looked_up = all_pairs(&counts()).into_iter().map(|row| looked_up(&row));
     others().into_iter().chain(looked_up).collect()

@@ -1,5 +1,5 @@
-//! The look-up of a shader simulated on the CPU, for contestants that have matrices and no picture: rays along the light
-//! stand in for the depths in the maps.
+//! Simulates a shader's look-up on the CPU, for contestants that have matrices but no pictures. Rays along
+//! the light find the depths that the maps would hold.
 //!
 //! The depth of a texel is the depth of the first triangle on a ray through its centre. The simulation leaves out the
 //! errors of rasterising and of rounding 32-bit depths, and normals are the normals of triangles.
@@ -27,14 +27,14 @@ pub struct LookupMap {
     pub bound: f64,
 }
 
-/// Maps and the rules by which a shader reads them.
+/// Maps and the rules for reading them in a shader.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShadowLookup {
     /// Maps in the order of their bounds.
     pub maps: Vec<LookupMap>,
     /// Texels across and down each map.
     pub size: u32,
-    /// Rule by which a point selects a map and blends it into the next one.
+    /// Rule for selecting the map of a point and blending it into the next one.
     pub blend: LookupBlend,
     /// Offset of a point toward the light, in metres.
     pub depth_bias: f64,
@@ -53,7 +53,7 @@ impl ShadowLookup {
         self.factors_at(tracer, truth, extent, |point| point.view_depth)
     }
 
-    /// Returns the same, with a view depth for each point that selects its map, in metres.
+    /// Returns the same factors. `view_depth` returns the view depth that selects a point's map, in metres.
     pub(super) fn factors_at(
         &self,
         tracer: &Tracer,
@@ -115,7 +115,7 @@ pub enum LookupBlend {
     },
 }
 
-/// A filter, of the same weights across and down.
+/// A filter with the same weights along both axes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LookupFilter {
     /// The four nearest texels, weighted by the hardware.
@@ -176,16 +176,16 @@ fn castano_13(position: f64) -> AxisTaps {
     AxisTaps { first: (corner - BEFORE) as i64, weights }
 }
 
-/// Finds the light that reaches points, and remembers the texels that it has traced.
+/// Computes the light that reaches points. It caches the traced texels.
 struct Simulation<'a> {
     tracer: &'a Tracer,
     lookup: &'a ShadowLookup,
-    /// Distance by which rays start before the maps, in metres: maps also hold casters before their near plane.
+    /// Distance of the ray starts before the maps, in metres: maps also hold casters before their near plane.
     before: f64,
     texels: Vec<MapTexels>,
 }
 
-/// The depths of a map that were traced so far.
+/// The texels of a map that were traced so far.
 struct MapTexels {
     world_from_clip: DMat4,
     depths: HashMap<[i64; 2], f64>,

@@ -13,7 +13,7 @@ use super::{Contestant, Drawn, LightMaps, LitSurface, Redraw, Shadows};
 use crate::geometry::Corners;
 use crate::peers::Frame;
 
-/// Share of a brightness by which rounding may change it: renderers draw in half floats.
+/// Relative change of brightness that rounding may cause: renderers draw in half floats.
 const ROUNDING: f32 = 2e-3;
 
 /// How frames are judged.
@@ -21,9 +21,10 @@ const ROUNDING: f32 = 2e-3;
 pub struct JudgeSettings {
     /// Width and height of the pictures, in pixels.
     pub size: [u32; 2],
-    /// Every Nth frame of a path is judged, the last of each N, so that the frame before is of the same path.
+    /// Interval of judged frames. The last frame of each interval is judged, so that its previous frame is on
+    /// the same path.
     pub every: u32,
-    /// Whether crawl is measured, for which each frame is drawn once more.
+    /// Whether crawl is measured. If so, each frame is drawn once more.
     pub crawl: bool,
 }
 
@@ -36,15 +37,16 @@ impl Default for JudgeSettings {
 /// Time that parts of the work took.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct JudgeTimes {
-    /// Time that the contestant drew.
+    /// Time for drawing by the contestant.
     pub drawing: Duration,
-    /// Time that truth was traced.
+    /// Time for tracing the truth.
     pub tracing: Duration,
-    /// Time that pictures were judged.
+    /// Time for judging pictures.
     pub judging: Duration,
     /// Number of frames whose truth was traced.
     pub frames: u32,
-    /// Sum over these frames of the share of pixels that were left out: they show another surface than rays find.
+    /// Sum over these frames of the share of pixels that were left out because the picture and rays show
+    /// different surfaces.
     pub different: f64,
 }
 
@@ -94,12 +96,12 @@ impl Judging {
         self.times
     }
 
-    /// Judges the frames of a scene, `objects` of triangles. Frames under one light are consecutive and in order. `look`
-    /// is shown each judged picture.
+    /// Judges the frames of a scene, whose triangles are in `objects`. Frames under one light must be
+    /// consecutive and in order. `look` is called with each judged picture.
     ///
     /// # Errors
     ///
-    /// If the contestant fails, if its pictures show other surfaces than rays find, or if `look` fails.
+    /// If the contestant fails, if its pictures and rays show different surfaces, or if `look` fails.
     pub fn judge_scene<C: Contestant>(
         &mut self,
         contestant: &mut C,
@@ -117,7 +119,7 @@ impl Judging {
     }
 }
 
-/// A contestant with a scene.
+/// A contestant and its current scene.
 struct Stage<'a, C> {
     contestant: &'a mut C,
     scene: &'a str,
@@ -128,14 +130,14 @@ struct Stage<'a, C> {
     look: &'a mut dyn FnMut(&JudgedPicture<'_>) -> Result<()>,
 }
 
-/// A frame that was drawn with one technique.
+/// A frame, drawn with one technique.
 struct Shown<'a, Maps> {
     frame: &'a Frame,
     drawn: Drawn<Maps>,
 }
 
 impl<C: Contestant> Stage<'_, C> {
-    /// Judges a path, whose frames follow one another, with all techniques.
+    /// Judges a path of consecutive frames with all techniques.
     fn judge_path(&mut self, path: &[&Frame]) -> Result<()> {
         let surfaces = self.see(path)?;
         let judged = path.iter().zip(&surfaces).filter(|(_, surfaces)| surfaces.is_some());
@@ -148,7 +150,7 @@ impl<C: Contestant> Stage<'_, C> {
         Ok(())
     }
 
-    /// Traces the truth of the frames that are judged; `None` for the others.
+    /// Traces the truth of the judged frames. Returns `None` for the others.
     fn see(&mut self, path: &[&Frame]) -> Result<Vec<Option<Surfaces>>> {
         self.contestant.begin_path(0, path[0])?;
         let JudgeSettings { every, crawl, .. } = self.judging.settings;
@@ -189,7 +191,7 @@ impl<C: Contestant> Stage<'_, C> {
         let mut before: Option<Shown<'_, C::Maps>> = None;
         let mut sums = Vec::new();
         for (index, frame) in path.iter().enumerate() {
-            // The maps of the frame before a judged one are needed, too.
+            // The maps of the frame before a judged one are also needed.
             if surfaces[index].is_none() && surfaces.get(index + 1).is_none_or(Option::is_none) {
                 before = None;
                 continue;
@@ -209,12 +211,13 @@ impl<C: Contestant> Stage<'_, C> {
         Ok(sums)
     }
 
-    /// Draws a frame again with its own maps, by its own view depths, too. Both pictures must equal the first one:
-    /// otherwise something else than crawl would be measured.
+    /// Draws a frame again with its own maps and then also with its own view depths. Both pictures must equal
+    /// the first one: otherwise the crawl would contain other differences.
     fn check_again(&mut self, shown: &Shown<'_, C::Maps>) -> Result<()> {
         let (Shadows::Brightness(picture) | Shadows::Factors(picture)) = &shown.drawn.shadows else { return Ok(()) };
         let (frame, maps) = (shown.frame, Some(&shown.drawn.maps));
-        // A projection by way of the world is rounded otherwise, so that pixels at silhouettes may differ.
+        // The second projection goes through world space and rounds differently, so that pixels at
+        // silhouettes may differ.
         for (view_depths_of, allowed, cause) in [(None, 0.0, "maps"), (Some(frame), MAX_DIFFERENT, "view depths")] {
             let Some(again) = self.redraw(&Redraw { frame, maps, view_depths_of })? else { return Ok(()) };
             let differs = |(first, second): &(&f32, &f32)| (**first - **second).abs() > ROUNDING * first.max(**second);
@@ -256,8 +259,8 @@ impl<C: Contestant> Stage<'_, C> {
         Ok(sums)
     }
 
-    /// Compares a judged picture with the picture of the maps of the frame before, in the same view. `None` if the
-    /// contestant cannot draw it.
+    /// Compares a judged picture with a picture of the same view that uses the previous frame's maps. Returns
+    /// `None` if the contestant cannot draw it.
     fn crawl(
         &mut self,
         shown: &Shown<'_, C::Maps>,
@@ -280,7 +283,7 @@ impl<C: Contestant> Stage<'_, C> {
         let Some(factors_before) = factors_before else { return Ok(None) };
         let start = Instant::now();
         let maps = self.contestant.light_maps(&before.drawn.maps, before.frame.to_light());
-        // Points that no map held in the frame before do not crawl.
+        // Points outside all maps of the previous frame do not crawl.
         let mut judged = found.judged.clone();
         for (counted, point) in judged.counted.iter_mut().zip(&surfaces.truth.points) {
             *counted &= point.as_ref().is_some_and(|point| maps.holds(point.position, depth(point)));

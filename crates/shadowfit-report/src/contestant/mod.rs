@@ -1,8 +1,9 @@
-//! Judges the sun shadows of any renderer against rays: of a game engine, of a page in a browser, or of matrices alone.
+//! Judges the sun shadows of any renderer against rays: of a game engine, of a web page, or of matrices
+//! alone.
 //!
-//! A renderer implements [`Contestant`]. [`Judging`] walks the paths of a file of scenarios ([`crate::peers`]) with each
-//! of its techniques, compares every pixel with rays toward the light, and draws each frame once more with the maps of the
-//! frame before, which shows the shadow edges that crawl:
+//! A renderer implements [`Contestant`]. [`Judging`] draws the paths of a scenario file ([`crate::peers`])
+//! with each technique of the renderer and compares every pixel with a ray toward the light. It also draws
+//! each frame with the maps of the previous frame, to measure how much the shadow edges crawl:
 //!
 //! ```no_run
 //! use shadowfit_report::contestant::{Contestant, JudgeSettings, Judging};
@@ -21,7 +22,7 @@
 //! # }
 //! ```
 //!
-//! [`Results::to_run`] makes the [`Run`](crate::run::Run) that tables, plots and the page are made of.
+//! [`Results::to_run`] returns the [`Run`](crate::run::Run) for tables, plots and the page.
 
 mod lookup;
 mod measure;
@@ -75,8 +76,8 @@ pub trait Contestant {
     /// If the frame cannot be drawn.
     fn draw(&mut self, frame: &Frame) -> Result<Drawn<Self::Maps>>;
 
-    /// Draws a frame again, and fits nothing. `None` if the renderer cannot do this: its pictures must be light factors
-    /// then, and crawl is not measured.
+    /// Draws a frame again without fitting maps. Returns `None` if the renderer cannot do this. Its pictures
+    /// must then be light factors, and crawl is not measured.
     ///
     /// # Errors
     ///
@@ -88,8 +89,8 @@ pub trait Contestant {
     /// Describes the maps of a frame. `to_light` is the unit direction toward the light, world axes.
     fn light_maps(&self, maps: &Self::Maps, to_light: DVec3) -> LightMaps;
 
-    /// Returns the brightness of a surface without shadows, in any unit. Pixels of another brightness show another
-    /// surface than rays find, so they are left out. Lambert's law unless the renderer's own law differs.
+    /// Returns the brightness of a surface without shadows, in any unit. A pixel with another brightness
+    /// shows another surface than its ray hits, so it is left out. The default is Lambert's law.
     fn brightness(&self, surface: &LitSurface) -> f64 {
         surface.normal.dot(surface.to_light).max(0.0)
     }
@@ -100,19 +101,19 @@ pub trait Contestant {
 pub struct Drawn<Maps> {
     /// Shadows of the frame.
     pub shadows: Shadows,
-    /// Maps that they came from.
+    /// Maps of the frame.
     pub maps: Maps,
 }
 
 /// Shadows of a frame, in one of the forms that renderers can give.
 #[derive(Clone, Debug)]
 pub enum Shadows {
-    /// Brightness of each pixel. It is divided by the brightness without shadows, for which [`Contestant::redraw`] is
-    /// called.
+    /// Brightness of each pixel. It is divided by the brightness without shadows, which comes from
+    /// [`Contestant::redraw`].
     Brightness(Vec<f32>),
     /// Share of the light that reaches each pixel, 0..=1.
     Factors(Vec<f32>),
-    /// Matrices and the rules of a look-up alone. Rays find the depths that the maps would hold.
+    /// Only matrices and the rules of a look-up. Rays find the depths that the maps would hold.
     Lookup(ShadowLookup),
 }
 
@@ -121,30 +122,30 @@ pub enum Shadows {
 pub struct Redraw<'a, Maps> {
     /// Camera and light.
     pub frame: &'a Frame,
-    /// Maps in place of new ones; `None` draws without shadows.
+    /// Maps to use instead of new ones. `None` draws without shadows.
     pub maps: Option<&'a Maps>,
-    /// Frame whose view depths select among the maps, if that is another frame.
+    /// Frame whose view depths select the maps, if it is another frame.
     pub view_depths_of: Option<&'a Frame>,
 }
 
-/// The maps of a frame in the form that is measured.
+/// The maps of a frame, as input to the measures.
 #[derive(Clone, Debug)]
 pub struct LightMaps {
-    /// Maps; by view depth they are in order of their splits.
+    /// Maps. If they are selected by view depth, they are in the order of their splits.
     pub maps: Vec<MeasuredMap>,
-    /// Rule by which a point selects among the maps.
+    /// Rule for selecting the map of a point.
     pub reading: MapReading,
     /// Radius of the filter: greatest distance per axis, in texels, from the sample point to the centre of a texel of
     /// non-zero weight.
     pub filter_radius: f32,
     /// Whether the maps also hold casters before their near plane.
     pub depth_clamp: bool,
-    /// Whether a point that lies outside of the map of its view depth reads a later one. If not, it is lit.
+    /// Whether a point outside the map of its view depth reads a later map. If not, it is lit.
     pub reads_later_maps: bool,
 }
 
 impl LightMaps {
-    /// Returns the maps in the form that a picture is judged with.
+    /// Returns the maps in the form for judging a picture.
     pub fn picture_maps(&self) -> PictureMaps<'_> {
         PictureMaps {
             maps: &self.maps,
@@ -154,7 +155,7 @@ impl LightMaps {
         }
     }
 
-    /// Returns whether a map that a point reads holds it.
+    /// Returns whether one of the maps that a point may read contains it.
     fn holds(&self, position: DVec3, view_depth: f64) -> bool {
         let is_inside = |map: &MeasuredMap| map.is_inside(&map.project(position));
         if matches!(self.reading, MapReading::Coverage { .. }) {

@@ -10,11 +10,20 @@ use crate::markdown::{markdown_table, readable};
 use crate::peers::Frame;
 use crate::run::{Columns, FrameInfo, Run, TechniqueRun};
 
-/// Columns of the Markdown tables; JSON and pages have all.
-const COLUMNS: [&str; 8] =
-    ["wrong %", "crawl %", "change %", "hole %", "uncov %", "missed %", "false shadow %", "false light %"];
+/// Columns of the Markdown tables. JSON and pages have all columns.
+const COLUMNS: [&str; 9] = [
+    "wrong %",
+    "light error %",
+    "crawl %",
+    "change %",
+    "hole %",
+    "uncov %",
+    "missed %",
+    "false shadow %",
+    "false light %",
+];
 /// Columns that are followed by their ratio to the reference technique.
-const COMPARED: [&str; 3] = ["wrong %", "crawl %", "change %"];
+const COMPARED: [&str; 4] = ["wrong %", "light error %", "crawl %", "change %"];
 
 /// The results of all techniques.
 #[derive(Clone, Debug, Default)]
@@ -38,12 +47,12 @@ pub struct FrameResult {
     pub sums: Vec<Sums>,
 }
 
-/// Facts about a run that results do not contain.
+/// Facts about a run that the results do not contain.
 #[derive(Clone, Debug, Default)]
 pub struct RunFacts {
     /// Title of the page.
     pub title: String,
-    /// The scenes, in a few words.
+    /// Short description of the scenes.
     pub scene: String,
     /// Number of triangles.
     pub triangles: u64,
@@ -53,7 +62,7 @@ pub struct RunFacts {
     pub adapter: String,
     /// Remarks on the measurement, in whole sentences.
     pub notes: Vec<String>,
-    /// A sentence about each technique, in their order.
+    /// A sentence about each technique, in the order of the techniques.
     pub descriptions: Vec<String>,
 }
 
@@ -90,7 +99,7 @@ impl Results {
         overall + &by_scene.collect::<String>()
     }
 
-    /// Returns all numbers as JSON. `run` says how they were measured.
+    /// Returns all numbers as JSON. `run` describes the measurement.
     pub fn to_json(&self, run: &Value) -> Value {
         let groups = self.groups();
         let of_technique = |(technique, name): (usize, &String)| {
@@ -106,7 +115,7 @@ impl Results {
         json!({ "run": run, "fits": fits })
     }
 
-    /// Returns the run that tables, plots and the page are made of, without pictures.
+    /// Returns the run for tables, plots and the page, without pictures.
     pub fn to_run(&self, facts: RunFacts) -> Run {
         let groups = self.groups();
         let of_technique = |(technique, name): (usize, &String)| TechniqueRun {
@@ -187,7 +196,7 @@ fn named(sums: &Sums) -> Columns {
     sums.columns().into_iter().map(|(title, value)| (title.to_owned(), value)).collect()
 }
 
-/// The columns of some sums, and the numbers of pixels that they came from.
+/// Returns the columns of some sums, and the pixel counts behind them.
 fn columns(sums: &Sums) -> Value {
     let of_column = |(title, value): (&'static str, f64)| (title, Some(value).filter(|value| value.is_finite()));
     let columns: BTreeMap<&str, Option<f64>> = sums.columns().into_iter().map(of_column).collect();

@@ -1,5 +1,5 @@
-//! The surface that each pixel of a frame shows, checked against the renderer's picture without shadows, and the light
-//! that truly reaches it.
+//! The visible surface at each pixel of a frame, checked against the renderer's picture without shadows, and
+//! the light that truly reaches it.
 
 use anyhow::{Result, ensure};
 use glam::DVec3;
@@ -7,14 +7,15 @@ use shadowfit_truth::{PixelCamera, Tracer, Truth, TruthSettings};
 
 use crate::peers::Frame;
 
-/// Greatest share of pixels that may show another surface than rays find: at silhouettes, rasterisers and rays decide
-/// differently.
+/// Greatest share of pixels that may show another surface than rays hit. Rasterisers and rays decide
+/// differently at silhouettes.
 pub(super) const MAX_DIFFERENT: f64 = 0.01;
 /// Greatest difference of brightness between a pixel and its surface, as a share of the brightest surface.
 const BRIGHTNESS_TOLERANCE: f64 = 0.01;
-/// Least brightness of pixels that set the unit of brightness.
+/// Least brightness, as a share of the unit, of pixels that define the unit of brightness.
 const BRIGHT: f64 = 0.1;
-/// Least brightness of pixels whose light factor is known: darker pixels would divide rounding errors.
+/// Least brightness of pixels whose light factor is defined. In darker pixels the division would amplify
+/// rounding errors.
 const DARK: f32 = 1e-4;
 
 /// A surface under the sun. All directions are unit vectors, world axes.
@@ -33,19 +34,20 @@ pub(super) struct Surfaces {
     pub(super) truth: Truth,
     /// Picture without shadows, if the renderer's pictures are brightness.
     pub(super) unshadowed: Option<Vec<f32>>,
-    /// The same picture by the view depths of the frame before.
+    /// The same picture with maps selected by the view depths of the previous frame.
     pub(super) unshadowed_before: Option<Vec<f32>>,
-    /// Share of pixels that are left out, 0..=1: they show another surface than rays find.
+    /// Share of pixels that are left out, 0..=1, because the picture and rays show different surfaces.
     pub(super) different: f64,
 }
 
 impl Surfaces {
-    /// Traces the truth of a frame. `unshadowed` is the picture without shadows, with the brightness that each surface has
-    /// by the renderer's law.
+    /// Traces the truth of a frame. `unshadowed` is the renderer's picture without shadows, and `brightness`
+    /// is its brightness of each surface.
     ///
     /// # Errors
     ///
-    /// If the picture shows other surfaces than rays find: it belongs to another frame, or its pixels lie elsewhere.
+    /// If the picture and rays show different surfaces: the picture belongs to another frame, or its pixels
+    /// are misplaced.
     pub(super) fn new(
         tracer: &Tracer,
         frame: &Frame,
@@ -74,7 +76,7 @@ impl Surfaces {
         Ok(Self { truth, unshadowed, unshadowed_before: None, different })
     }
 
-    /// Adds the picture without shadows by the view depths of the frame before.
+    /// Adds the picture without shadows whose maps are selected by the view depths of the previous frame.
     ///
     /// # Errors
     ///
@@ -95,8 +97,8 @@ pub(super) fn factors(shadowed: &[f32], unshadowed: &[f32]) -> Vec<f32> {
     shadowed.iter().zip(unshadowed).map(of_pixel).collect()
 }
 
-/// Returns the brightness of each pixel without shadows. `None` where rays find triangles beyond the far plane only: the
-/// renderer may draw them or not.
+/// Returns the brightness of each pixel without shadows. Returns `None` where rays hit only triangles beyond
+/// the far plane, which the renderer may or may not draw.
 fn expected(
     tracer: &Tracer,
     camera: &PixelCamera,
@@ -116,7 +118,7 @@ fn expected(
     seen.iter().enumerate().map(of_pixel).collect()
 }
 
-/// Returns the pixels whose brightness is not the expected one. The median of the bright pixels sets the unit.
+/// Returns the pixels with an unexpected brightness. The median of the bright pixels defines the unit.
 fn differences(expected: &[Option<f64>], unshadowed: &[f32]) -> Vec<usize> {
     let pairs = || expected.iter().zip(unshadowed).enumerate();
     let ratio = |(_, (expected, found)): (usize, (&Option<f64>, &f32))| {

@@ -1,7 +1,7 @@
 //! Heat maps of pixels per texel, with a legend.
 //!
-//! The scale is one of octaves, since twice the texel is one step worse everywhere; the ramp is viridis, which is even
-//! to the eye and readable to the colour-blind.
+//! The scale is logarithmic, since doubling the texel size is the same loss anywhere on it. The colour ramp
+//! is viridis, which is perceptually uniform and readable for the colour-blind.
 
 use anyhow::{Result, ensure};
 use image::{Rgba, RgbaImage};
@@ -10,25 +10,26 @@ use plotters::style::text_anchor::HPos;
 
 use super::strip::{Strip, width};
 
-/// Ends of the scale, log2 of pixels per texel: finer texels than a quarter of a pixel are not seen, and texels of 32
-/// pixels are very coarse.
+/// Ends of the scale, as log2 of pixels per texel. Texels below a quarter of a pixel are invisible, and
+/// texels of 32 pixels are very coarse.
 const OCTAVES: [f32; 2] = [-2.0, 5.0];
-/// Colour of pixels that no map covers or that have no surface; grey is not on the ramp.
+/// Colour of pixels that no map covers or that have no surface. The ramp contains no grey.
 const NONE: [u8; 3] = [58, 60, 64];
 /// Colour of the mark at one pixel per texel.
 const MARK: [u8; 3] = [255, 255, 255];
-/// Lines of the legend: its title, the ramp, and the ticks.
+/// Number of lines of the legend: title, ramp and ticks.
 const LINES: u32 = 3;
-/// Space beside the ramp, in pixels at scale 1: half the width of the text at its ends.
+/// Margin beside the ramp, in pixels at scale 1: half the width of its end labels.
 const MARGIN: f32 = 24.0;
-/// Half the width of the mark, in pixels at scale 1.
+/// Half of the mark's width, in pixels at scale 1.
 const HALF_MARK: f32 = 1.5;
 
-/// The heat map of pixels per texel (rows from the top; infinite or not a number for none) with its legend below.
+/// Draws the heat map of pixels per texel with its legend below. Values are in rows from the top. Infinity or
+/// NaN means that no map covers the pixel.
 ///
 /// # Errors
 ///
-/// When there are not as many values as pixels, or none.
+/// If the numbers of values and pixels differ, or there are none.
 pub fn heat(size: [u32; 2], pixels_per_texel: &[f32]) -> Result<RgbaImage> {
     let [columns, rows] = size;
     let pixels = columns as usize * rows as usize;
@@ -41,7 +42,7 @@ pub fn heat(size: [u32; 2], pixels_per_texel: &[f32]) -> Result<RgbaImage> {
     legend(columns).map(|strip| strip.below(&map))
 }
 
-/// The colour of a value, sRGB.
+/// Returns the colour of a value, sRGB.
 fn colour(pixels_per_texel: f32) -> [u8; 3] {
     if !pixels_per_texel.is_finite() || pixels_per_texel < 0.0 {
         return NONE;
@@ -49,7 +50,7 @@ fn colour(pixels_per_texel: f32) -> [u8; 3] {
     ramp(place(pixels_per_texel))
 }
 
-/// Where on the ramp a value is, 0..=1.
+/// Returns the position of a value on the ramp, 0..=1.
 fn place(pixels_per_texel: f32) -> f32 {
     let [low, high] = OCTAVES;
     ((pixels_per_texel.log2() - low) / (high - low)).clamp(0.0, 1.0)

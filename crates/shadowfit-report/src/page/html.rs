@@ -1,7 +1,7 @@
-//! The page that a run is shared as: one HTML file that asks for nothing else.
+//! The page of a run: one self-contained HTML file.
 //!
-//! Table first, then plots, then pictures side by side. It reads without its script, which only hides what was not
-//! chosen and lets pictures be flicked through in one place.
+//! It shows the table, then the plots, then the pictures side by side. The page is readable without its
+//! script, which only hides the pictures that are not selected and shows large pictures one after another.
 
 use std::fmt::Write;
 use std::fs;
@@ -18,22 +18,22 @@ use crate::markdown::readable;
 use crate::run::{FramePictures, Run, TechniqueRun, meaning, telling, value};
 use crate::tables::{SCENE_NOTES, Table, facts, stopped, tables};
 
-/// Widest picture of the page, in pixels; wider ones are scaled down, so that it can be sent.
+/// Greatest width of a picture in the page, in pixels. Wider pictures are scaled down to keep the file small.
 const MAX_WIDTH: u32 = 1280;
 const STYLE: &str = include_str!("page.css");
 const SCRIPT: &str = include_str!("page.js");
-/// Kinds of pictures, in the order in which they are shown, and what each shows.
+/// Kinds of pictures, in display order, with their titles.
 const KINDS: [(&str, &str); 3] = [
     ("overlay", "Errors: wrong pixels in colour, the rest dimmed"),
     ("heat", "Sampling: screen pixels per shadow texel"),
     ("picture", "Picture: as rendered"),
 ];
 
-/// The page of a run, with its plots and the pictures that lie in `folder`.
+/// Returns the page of a run, with its plots and the pictures from `folder`.
 ///
 /// # Errors
 ///
-/// When a picture cannot be read.
+/// If a picture cannot be read.
 pub(crate) fn page(run: &Run, plots: &[Plot], folder: &Path) -> Result<String> {
     let mut text = head(run);
     text.push_str(&table_section(run));
@@ -42,8 +42,7 @@ pub(crate) fn page(run: &Run, plots: &[Plot], folder: &Path) -> Result<String> {
     text.push_str(&technique_section(run));
     let _ = write!(
         text,
-        "<footer>Made by shadowfit's report. The figures are in <code>report.json</code>, the camera path in \
-         <code>path.toml</code>.</footer>\n</main>\n<script>{SCRIPT}</script>\n</body>\n</html>\n"
+        "<footer>Made by shadowfit's report. The figures are in <code>report.json</code>.</footer>\n</main>\n<script>{SCRIPT}</script>\n</body>\n</html>\n"
     );
     Ok(text)
 }
@@ -122,7 +121,7 @@ fn table_html(table: &Table) -> String {
     text
 }
 
-/// A dot in the colour that a technique has in the plots.
+/// Returns a dot in the technique's plot colour.
 fn swatch(place: usize) -> String {
     let [r, g, b] = colour(place);
     format!("<i class=\"swatch\" style=\"background:rgb({r},{g},{b})\"></i>")
@@ -141,7 +140,7 @@ fn plot_section(plots: &[Plot]) -> String {
     text + "</div>\n</section>\n"
 }
 
-/// SVG that takes the width of its place.
+/// Returns SVG that scales to the width of its container.
 fn scalable(svg: &str) -> String {
     let start = svg.find("<svg").unwrap_or(0);
     svg[start..].replacen("<svg ", "<svg class=\"chart\" ", 1)
@@ -173,7 +172,7 @@ fn picture_section(run: &Run, folder: &Path) -> Result<String> {
     Ok(format!("<section id=\"pictures\">\n<h2>Pictures</h2>\n<p class=\"lead\">{lead}</p>\n{text}</section>\n"))
 }
 
-/// The worst, the median and the best of the frames that have pictures.
+/// Returns the worst, the median and the best of the frames that have pictures.
 fn chosen_frames(run: &Run) -> Vec<(usize, &'static str)> {
     let has_pictures = |frame: &usize| {
         run.techniques.iter().flat_map(|technique| &technique.pictures).any(|shown| shown.frame == *frame)
@@ -204,7 +203,7 @@ fn figure(
     ))
 }
 
-/// A PNG file as an address that holds it, scaled down where it is wide.
+/// Returns a PNG file as a data URI. Wide pictures are scaled down.
 fn data_uri(file: &Path) -> Result<String> {
     let read = || -> Result<Vec<u8>> {
         let bytes = fs::read(file)?;
@@ -233,7 +232,7 @@ fn technique_section(run: &Run) -> String {
     text
 }
 
-/// Text that HTML shows as it is, in elements and quoted attributes.
+/// Escapes text for HTML elements and quoted attributes.
 fn escape(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for character in text.chars() {

@@ -1,6 +1,6 @@
-//! Pictures with their errors marked, plots over the camera path, and the page that shows both.
+//! Pictures with marked errors, plots along the camera path, and the page that shows both.
 //!
-//! [`Output`] writes all of it into a folder, from a finished [`Run`](crate::run::Run).
+//! [`Output`] writes them into a folder, from a finished [`Run`](crate::run::Run).
 
 mod heat;
 mod html;

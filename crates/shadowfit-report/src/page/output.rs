@@ -1,4 +1,4 @@
-//! The output folder of a report, and writing into it so that a reader never sees half a file.
+//! The output folder of a report.
 //!
 //! ```text
 //! index.html  report.md  report.json  path.toml  pictures/*.png  plots/*.svg
@@ -17,17 +17,17 @@ use crate::tables::{to_json, to_markdown};
 
 const PICTURES: &str = "pictures";
 const PLOTS: &str = "plots";
-/// The camera path.
+/// File name of the camera path.
 pub const PATH: &str = "path.toml";
-/// The page, which a reader opens first.
+/// File name of the HTML page, the entry point for readers.
 pub const PAGE: &str = "index.html";
 
-/// How files are written. A reader never sees half a file if these functions write files whole.
+/// Functions that write files. Readers never see partial files if both functions are atomic.
 #[derive(Clone, Copy, Debug)]
 pub struct FileWriter {
-    /// Makes a folder and checks that files can be made in it.
+    /// Creates a folder and checks that it is writable.
     pub make_folder: fn(&Path) -> Result<()>,
-    /// Writes a file, and replaces an older one of the same name.
+    /// Writes a file, replacing an existing one.
     pub write: fn(&Path, &[u8]) -> Result<()>,
 }
 
@@ -39,11 +39,11 @@ pub struct Output {
 }
 
 impl Output {
-    /// Makes the folder and those in it, where they are not there yet.
+    /// Creates the folder and its subfolders if they are missing.
     ///
     /// # Errors
     ///
-    /// When they cannot be made or written to.
+    /// If a folder cannot be created or written to.
     pub fn create(folder: &Path, writer: FileWriter) -> Result<Self> {
         for folder in [folder.to_owned(), folder.join(PICTURES), folder.join(PLOTS)] {
             (writer.make_folder)(&folder)?;
@@ -55,7 +55,7 @@ impl Output {
     ///
     /// # Errors
     ///
-    /// When it cannot be written.
+    /// If the picture cannot be written.
     pub fn write_picture(&self, name: &PictureName<'_>, picture: &RgbaImage) -> Result<PathBuf> {
         let PictureName { place, technique, frame, kind } = name;
         let file = Path::new(PICTURES).join(format!("{place}-{}-{}-{kind}.png", slug(technique), slug(frame)));
@@ -63,21 +63,23 @@ impl Output {
         Ok(file)
     }
 
-    /// Writes the tables, plots, path and page of a run whose pictures are written already. `path` is the text of the
-    /// camera path.
+    /// Writes the tables, plots, path and page of a run. Its pictures must be written already. `path` is the
+    /// text of the camera path.
     ///
     /// # Errors
     ///
-    /// When a file cannot be written, or a picture cannot be read back for the page.
-    pub fn write_report(&self, run: &Run, path: &str) -> Result<()> {
-        self.write(Path::new(PATH), path.as_bytes())?;
+    /// If a file cannot be written, or a picture cannot be read back for the page.
+    pub fn write_report(&self, run: &Run, path: Option<&str>) -> Result<()> {
+        if let Some(path) = path {
+            self.write(Path::new(PATH), path.as_bytes())?;
+        }
         self.write(Path::new("report.json"), to_json(run)?.as_bytes())?;
         self.write(Path::new("report.md"), to_markdown(run).as_bytes())?;
         let plots = plots(run)?;
         for plot in &plots {
             self.write(&Path::new(PLOTS).join(format!("{}.svg", slug(&plot.column))), plot.svg.as_bytes())?;
         }
-        // The page comes last: where it is, the rest is.
+        // The page is written last: if it exists, all other files do.
         self.write(Path::new(PAGE), page(run, &plots, &self.folder)?.as_bytes())
     }
 
@@ -89,7 +91,7 @@ impl Output {
 /// The parts of the file name of a picture. Technique and frame may hold any characters.
 #[derive(Clone, Copy, Debug)]
 pub struct PictureName<'a> {
-    /// Place of the technique in the run, so that equal names do not collide.
+    /// Index of the technique in the run, so that techniques with equal names get different files.
     pub place: usize,
     /// Name of the technique.
     pub technique: &'a str,
@@ -99,7 +101,7 @@ pub struct PictureName<'a> {
     pub kind: &'a str,
 }
 
-/// A name that every file system takes: letters, digits and dashes.
+/// Returns a file name that is valid on all file systems: letters, digits and dashes.
 fn slug(name: &str) -> String {
     let letters = name.chars().map(|c| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { ' ' });
     letters.collect::<String>().split_whitespace().collect::<Vec<_>>().join("-")
@@ -132,7 +134,7 @@ mod tests {
             });
             technique.pictures.push(FramePictures { frame: 1, overlay, heat, picture });
         }
-        output.write_report(&run, "near = 0.1\n").expect("written");
+        output.write_report(&run, Some("near = 0.1\n")).expect("written");
         let mut files: Vec<String> = ["", "pictures", "plots"]
             .iter()
             .flat_map(|sub| fs::read_dir(folder.join(sub)).expect("a folder"))

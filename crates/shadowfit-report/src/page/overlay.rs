@@ -1,6 +1,6 @@
-//! The picture with its wrong pixels marked, and a legend that says how many there are of each kind.
+//! The picture with its wrong pixels marked, and a legend with the share of each kind of error.
 //!
-//! What is right is dimmed and grey, so that colour means error and nothing else.
+//! Right pixels are dimmed and grey, so that all colours mean errors.
 
 use anyhow::{Result, ensure};
 use image::{Rgba, RgbaImage};
@@ -10,29 +10,30 @@ use shadowfit_truth::Class;
 use super::strip::{Strip, scale, width};
 use crate::markdown::readable;
 
-/// The kinds of wrong pixels, their names and colours (sRGB).
+/// Kinds of wrong pixels with names and colours (sRGB).
 const KINDS: [(Class, &str, [u8; 3]); 4] = [
     (Class::FalseShadow, "false shadow", [255, 64, 56]),
     (Class::FalseLight, "false light", [56, 132, 255]),
     (Class::Hole, "hole", [255, 64, 232]),
     (Class::Edge, "edge error", [255, 216, 0]),
 ];
-/// Brightness of right pixels: their shapes stay readable, and every mark is brighter.
+/// Brightness of right pixels. Shapes stay readable, and every mark is brighter.
 const DIM: f32 = 0.5;
 /// Brightness of pixels that are not judged, such as the sky.
 const UNJUDGED_DIM: f32 = 0.3;
 /// Weights of sRGB's primaries in its luma (ITU-R BT.709).
 const LUMA: [f32; 3] = [0.2126, 0.7152, 0.0722];
-/// Side of a swatch, and gaps beside text, in pixels at scale 1.
+/// Side of a colour swatch, and gaps around its text, in pixels at scale 1.
 const SWATCH: f32 = 14.0;
 const GAP: f32 = 7.0;
 const MARGIN: f32 = 10.0;
 
-/// Marks the wrong pixels of a picture (rows from the top, as many verdicts as pixels) and adds the legend below.
+/// Marks the wrong pixels of a picture and adds the legend below. `classes` has one verdict per pixel, rows
+/// from the top.
 ///
 /// # Errors
 ///
-/// When the numbers of pixels and verdicts differ.
+/// If the numbers of pixels and verdicts differ.
 pub fn overlay(picture: &RgbaImage, classes: &[Class]) -> Result<RgbaImage> {
     let pixels = picture.pixels().len();
     ensure!(pixels == classes.len(), "{pixels} pixels, but {} verdicts", classes.len());
@@ -56,7 +57,7 @@ fn mark(pixel: Rgba<u8>, class: Class) -> Rgba<u8> {
     }
 }
 
-/// The shares of all kinds: of the pixels that were judged, as in the tables.
+/// Returns the legend texts with the share of each kind among the judged pixels, as in the tables.
 fn texts(classes: &[Class]) -> Vec<(String, [u8; 3])> {
     let judged = classes.iter().filter(|class| **class != Class::NotJudged).count();
     let share = |kind: Class| {
@@ -66,7 +67,7 @@ fn texts(classes: &[Class]) -> Vec<(String, [u8; 3])> {
     KINDS.iter().map(|(kind, name, colour)| (format!("{name} {}", share(*kind)), *colour)).collect()
 }
 
-/// The kinds in as many lines as they need.
+/// Draws the legend. A narrow picture needs more lines.
 fn legend(picture_width: u32, texts: &[(String, [u8; 3])]) -> Result<Strip> {
     let scale = scale(picture_width);
     let [swatch, gap, margin] = [SWATCH, GAP, MARGIN].map(|length| length * scale);

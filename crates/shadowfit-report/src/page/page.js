@@ -3,7 +3,7 @@
   const section = document.getElementById("pictures");
   if (!section) return;
 
-  // One frame and one kind of picture at a time.
+  // Shows one frame and one kind of picture at a time.
   const frames = [...section.querySelectorAll(".frame")];
   const kinds = ["overlay", "heat", "picture"];
   const names = { overlay: "Errors", heat: "Sampling", picture: "Picture" };
@@ -36,7 +36,8 @@
   section.querySelector(".lead").append(" Choose a picture to see it large.");
   show();
 
-  // A picture large, and its neighbours in the same place: differences show when they are flicked through.
+  // Shows one picture large. The arrow keys replace it with its neighbours at the same position, so that
+  // differences show.
   const dialog = document.createElement("dialog");
   const large = document.createElement("img");
   const caption = document.createElement("p");

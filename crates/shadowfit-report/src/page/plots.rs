@@ -1,6 +1,6 @@
-//! Plots over the camera path: a column against the frames, for all techniques, as SVG.
+//! SVG plots along the camera path: one column per plot, frames on the x axis, one line per technique.
 //!
-//! They say where on the path a technique fails, which a table of the whole path hides.
+//! They show where on the path a technique fails. A table of the whole path hides this.
 
 use anyhow::{Result, anyhow};
 use plotters::coord::Shift;
@@ -14,16 +14,17 @@ use super::plotting::{
 use crate::markdown::readable;
 use crate::run::{Run, TechniqueRun, value};
 
-/// Columns that are plotted where the run has them.
-const COLUMNS: [&str; 6] = ["wrong %", "false shadow %", "false light %", "hole %", "ppt p95", "crawl %"];
-/// Width and least height, in pixels; the browser scales them. Long legends make a plot higher.
+/// Columns that are plotted if the run has values for them.
+const COLUMNS: [&str; 8] =
+    ["wrong %", "light error %", "flip", "false shadow %", "false light %", "hole %", "ppt p95", "crawl %"];
+/// Width and minimum height, in pixels. Browsers scale the plots. A long legend makes a plot higher.
 const SIZE: (u32, u32) = (780, 300);
-/// Width of the legend beside the plot, in pixels, and how many characters of a name fit in it.
+/// Width of the legend beside the plot, in pixels, and the number of characters of a name that fit.
 const LEGEND: u32 = 215;
 const NAME_LENGTH: usize = 23;
-/// Names of groups stand this far below the axis, under its numbers, in pixels.
+/// Distance of group names below the axis, in pixels. The axis numbers are in between.
 const BELOW_AXIS: i32 = 35;
-/// Greatest ratio of values that an even axis shows well.
+/// Greatest ratio of values for a linear axis. Larger ratios get a logarithmic one.
 const EVEN_RATIO: f64 = 100.0;
 
 /// A plot of one column.
@@ -33,24 +34,24 @@ pub(crate) struct Plot {
     pub(crate) svg: String,
 }
 
-/// Frames of a group: its name, and its first frame and that after its last.
+/// A group of consecutive frames: its name, its first frame, and the frame after its last one.
 #[derive(Clone, Debug, PartialEq)]
 struct Group<'a> {
     name: &'a str,
     frames: [usize; 2],
 }
 
-/// Colour of the technique at a place in the run, sRGB, as in all plots.
+/// Returns the colour (sRGB) of the technique with this index in the run. It is the same in all plots.
 pub(crate) fn colour(place: usize) -> [u8; 3] {
     let RGBColor(r, g, b) = COLOURS[place % COLOURS.len()];
     [r, g, b]
 }
 
-/// The plots of the columns that the run has values of.
+/// Returns a plot for each column that has values in the run.
 ///
 /// # Errors
 ///
-/// When one cannot be drawn.
+/// If a plot cannot be drawn.
 pub(crate) fn plots(run: &Run) -> Result<Vec<Plot>> {
     register();
     let has_values = |column: &&str| values(run, column).next().is_some();
@@ -68,7 +69,7 @@ fn plot(run: &Run, column: &str) -> Result<Plot> {
     Ok(Plot { column: column.to_owned(), svg })
 }
 
-/// The finite values of a column, of all techniques and frames.
+/// Returns the finite values of a column, for all techniques and frames.
 fn values<'a>(run: &'a Run, column: &'a str) -> impl Iterator<Item = f64> + 'a {
     let frames = run.techniques.iter().flat_map(|technique| &technique.frames);
     frames.filter_map(move |columns| value(columns, column)).filter(|value| value.is_finite())
@@ -139,7 +140,7 @@ where
     Ok(())
 }
 
-/// Runs of frames of a group that a technique has values at.
+/// Returns the lines of a technique in a group. A frame without a value ends a line.
 fn lines(technique: &TechniqueRun, column: &str, group: &Group) -> Vec<Vec<(f64, f64)>> {
     let mut lines = vec![Vec::new()];
     for frame in group.frames[0]..group.frames[1] {
@@ -153,7 +154,7 @@ fn lines(technique: &TechniqueRun, column: &str, group: &Group) -> Vec<Vec<(f64,
     lines
 }
 
-/// Style of a technique's marks: full, and hollow where the colours come round again.
+/// Returns the style of a technique's marks: filled, and hollow when the colours repeat.
 fn mark(place: usize) -> ShapeStyle {
     let colour = COLOURS[place % COLOURS.len()];
     if place < COLOURS.len() { colour.filled() } else { colour.stroke_width(1) }
@@ -169,7 +170,7 @@ fn legend<'a>(run: &Run, area: &Area<'a>) -> Drawn<'a> {
     Ok(())
 }
 
-/// A name that fits in the legend.
+/// Returns a name shortened to fit in the legend.
 fn short(name: &str) -> String {
     if name.chars().count() <= NAME_LENGTH {
         return name.to_owned();

@@ -1,4 +1,4 @@
-//! Pictures as PNG.
+//! PNG encoding.
 
 use std::io::Cursor;
 
@@ -6,7 +6,7 @@ use anyhow::Result;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{DynamicImage, RgbaImage};
 
-/// A picture as PNG, as small as the format allows: reports are kept and sent around.
+/// Encodes a picture as a small PNG, since reports are stored and sent.
 pub(crate) fn png(picture: &RgbaImage) -> Result<Vec<u8>> {
     let mut bytes = Cursor::new(Vec::new());
     let encoder = PngEncoder::new_with_quality(&mut bytes, CompressionType::Default, FilterType::Adaptive);

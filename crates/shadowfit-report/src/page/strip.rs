@@ -1,6 +1,6 @@
-//! Text and boxes in pictures, in a font that comes along, so that every system draws the same.
+//! Text and boxes in pictures. The font is built in, so that every system draws the same pixels.
 //!
-//! Pictures get a strip below with their legend, so that they can be read wherever they end up.
+//! Legends are drawn into a strip below the picture, so that they stay with it wherever it is copied.
 
 use anyhow::{Result, anyhow};
 use image::{Rgba, RgbaImage, imageops};
@@ -9,33 +9,34 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use super::plotting::{FAMILY, register};
 
-/// Colour of the legends' ground.
+/// Background colour of legends.
 const GROUND: RGBColor = RGBColor(24, 26, 30);
-/// Colour of the legends' text.
+/// Text colour of legends.
 const INK: RGBColor = RGBColor(232, 234, 238);
-/// Height of a legend's line at scale 1, in pixels.
+/// Line height of legends at scale 1, in pixels.
 const LINE: u32 = 22;
-/// Text is placed by the middle of its box, which lies above that of its letters by this share of a line.
+/// Downward shift of text, as a share of a line: the middle of a text's box is above the middle of its
+/// letters.
 const BELOW_MIDDLE: f32 = 0.07;
-/// Height of its text at scale 1, in pixels.
+/// Text height at scale 1, in pixels.
 const TEXT: u32 = 14;
-/// Width of pictures that legends of scale 1 suit, in pixels.
+/// Width of a picture whose legend has scale 1, in pixels.
 const WIDTH: u32 = 720;
 
-/// A strip that a legend is drawn on.
+/// A strip for a legend.
 pub(crate) struct Strip {
     pixels: Vec<u8>,
     size: [u32; 2],
-    /// Size of its text against that of a picture of [`WIDTH`] pixels.
+    /// Text size relative to the text of a picture with [`WIDTH`] pixels.
     pub(crate) scale: f32,
 }
 
-/// Size of legends for a picture of a width in pixels: never so small that its text cannot be read.
+/// Returns the legend scale for a picture width in pixels. It is limited so that the text stays readable.
 pub(crate) fn scale(width: u32) -> f32 {
     (width as f32 / WIDTH as f32).clamp(0.85, 3.0)
 }
 
-/// Width of a text in pixels, at a scale.
+/// Returns the width of a text at a scale, in pixels.
 pub(crate) fn width(text: &str, scale: f32) -> f32 {
     register();
     let style = (FAMILY, f64::from(TEXT as f32 * scale)).into_font();
@@ -43,7 +44,7 @@ pub(crate) fn width(text: &str, scale: f32) -> f32 {
 }
 
 impl Strip {
-    /// A strip of `width` pixels with room for some lines.
+    /// Creates a strip of `width` pixels for this number of lines.
     pub(crate) fn new(width: u32, lines: u32) -> Self {
         register();
         let scale = scale(width);
@@ -52,7 +53,7 @@ impl Strip {
         Self { pixels, size, scale }
     }
 
-    /// Fills a box: its left and right edge in pixels, its top and bottom in lines.
+    /// Fills a box. `edges` are its left and right edge in pixels, `lines` its top and bottom in lines.
     pub(crate) fn fill(&mut self, edges: [f32; 2], lines: [f32; 2], colour: [u8; 3]) {
         let [width, height] = self.size.map(|length| length as usize);
         let [left, right] = edges.map(|edge| (edge.round().max(0.0) as usize).min(width));
@@ -62,7 +63,8 @@ impl Strip {
         }
     }
 
-    /// Writes text with its middle at a line; `x` in pixels is its left edge, middle, or right edge.
+    /// Draws text, vertically centred at a line. `align` tells whether `x`, in pixels, is its left edge,
+    /// middle or right edge.
     pub(crate) fn write(&mut self, text: &str, x: f32, line: f32, align: HPos) -> Result<()> {
         let size = f64::from(TEXT as f32 * self.scale);
         let style = TextStyle::from((FAMILY, size).into_font()).color(&INK).pos(Pos::new(align, VPos::Center));
@@ -71,7 +73,7 @@ impl Strip {
         backend.draw_text(text, &style, place).map_err(|error| anyhow!("a legend cannot be written: {error}"))
     }
 
-    /// The picture with the strip below it.
+    /// Returns the picture with the strip below it.
     pub(crate) fn below(self, picture: &RgbaImage) -> RgbaImage {
         let [width, height] = self.size;
         let rgba = self.pixels.chunks_exact(3).flat_map(|rgb| [rgb[0], rgb[1], rgb[2], u8::MAX]).collect();
@@ -83,7 +85,7 @@ impl Strip {
         whole
     }
 
-    /// Pixels from the top of a line, the first being 0; lines need not be whole.
+    /// Converts a position in lines, which may be fractional, into pixels from the top of the strip.
     fn line(&self, line: f32) -> i32 {
         ((line * LINE as f32 + LINE as f32 / 4.0) * self.scale).round() as i32
     }

@@ -1,13 +1,13 @@
-//! Which share of a map's area the visible points need: each point marks the cells that its part of the
-//! picture covers.
+//! The share of a map's area that the visible points need. Each point marks the cells under its part of the
+//! picture.
 
 use glam::DVec2;
 
-/// Number of cells across a map, and down it.
+/// Number of cells along each side of a map.
 const CELLS: usize = 256;
-/// Longer sides of a point's parallelogram are shortened to this, in cells.
+/// Greatest length of a side of a point's parallelogram, in cells. Longer sides are shortened.
 const MAX_SIDE: f64 = 16.0;
-/// Samples in a cell's length along a side of a point's parallelogram.
+/// Number of samples per cell along a side of a point's parallelogram.
 const SAMPLES_PER_CELL: f64 = 1.5;
 
 /// The cells of a map.
@@ -23,8 +23,7 @@ impl Default for Cells {
 }
 
 impl Cells {
-    /// Marks the cells under a parallelogram, given in texels of a map of `size` texels by its
-    /// centre and its sides.
+    /// Marks the cells under a parallelogram. Its centre and sides are in texels of a map of `size` texels.
     pub(crate) fn mark(&mut self, size: DVec2, centre: DVec2, sides: [DVec2; 2]) {
         let cells_per_texel = CELLS as f64 / size;
         let centre = centre * cells_per_texel;
@@ -41,7 +40,7 @@ impl Cells {
         }
     }
 
-    /// Share of the cells that are marked, 0..=1.
+    /// Returns the share of the cells that are marked, 0..=1.
     pub(crate) fn share(&self) -> f64 {
         self.marked.iter().filter(|marked| **marked).count() as f64 / self.marked.len() as f64
     }
@@ -54,12 +53,12 @@ impl Cells {
     }
 }
 
-/// Number of samples along a side, in cells.
+/// Returns the number of samples along a side, which is in cells.
 fn samples(side: DVec2) -> u32 {
     ((SAMPLES_PER_CELL * side.length()).ceil() as u32).max(1)
 }
 
-/// Where a sample lies along a side, from -0.5 to 0.5.
+/// Returns the position of a sample along a side, from -0.5 to 0.5.
 fn offset(index: u32, samples: u32) -> f64 {
     (f64::from(index) + 0.5) / f64::from(samples) - 0.5
 }
@@ -68,8 +67,8 @@ fn offset(index: u32, samples: u32) -> f64 {
 mod tests {
     use super::*;
 
-    /// Number of cells that a parallelogram with these sides, in cells, marks in a map of 512 by 1024
-    /// texels, around cell (100, 100).
+    /// Returns the number of cells that a parallelogram with these sides, in cells, marks around cell (100,
+    /// 100) in a map of 512×1024 texels.
     fn marked(across: DVec2, down: DVec2) -> usize {
         let mut cells = Cells::default();
         let texels_per_cell = DVec2::new(2.0, 4.0);
@@ -82,7 +81,7 @@ mod tests {
     fn a_parallelogram_marks_the_cells_it_covers() {
         assert_eq!(marked(DVec2::ZERO, DVec2::ZERO), 1);
         assert_eq!(marked(DVec2::new(4.0, 0.0), DVec2::new(0.0, 6.0)), 24);
-        // A square that stands on its corner covers no less than its area.
+        // A square on its corner covers no less than its area.
         let tilted = marked(DVec2::new(5.0, 5.0), DVec2::new(-5.0, 5.0));
         assert!((50..=72).contains(&tilted), "{tilted}");
     }

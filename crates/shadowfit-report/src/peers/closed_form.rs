@@ -1,5 +1,5 @@
-//! Measures whose values follow from a drawing: a camera looks straight down on a floor, the light
-//! falls straight down, and maps enclose what the camera sees.
+//! Tests of the measures with values that follow from a drawing: a camera looks straight down on a floor, the
+//! light falls straight down, and the maps enclose the visible floor.
 //!
 //! ```text
 //!   eye ▽  height 4          pixels and texels are parallel to x and z,
@@ -15,14 +15,14 @@ use shadowfit_truth::{Histogram, MeasuredMap, Tracer};
 
 /// Height of the eye over the floor, in metres.
 const EYE: f64 = 4.0;
-/// Half of the vertical field of view: its tangent is 1/2, so 4 m of the floor's z are seen.
+/// Tangent of half of the vertical field of view. The camera sees 4 m of the floor along z.
 const TAN: f64 = 0.5;
-/// Metres of the floor in a pixel of a screen that is 1080 pixels high.
+/// Width on the floor of a pixel of a screen with 1080 rows, in metres.
 const PIXEL: f64 = 2.0 * TAN * EYE / 1080.0;
-/// Facing points of a frame.
+/// Number of facing points of a frame.
 const POINTS: u64 = 320 * 180;
 
-/// Frames of a path on which nothing moves.
+/// Returns a path of frames without movement.
 pub(crate) fn scenarios(frames: u32) -> Scenarios {
     let scene = Scene {
         name: "room".to_owned(),
@@ -37,13 +37,14 @@ pub(crate) fn scenarios(frames: u32) -> Scenarios {
     Scenarios { scenes: vec![scene], frames }
 }
 
-/// The floor, and what stands over it. No ray meets the diagonal that two triangles share.
+/// The floor and the roofs above it. No ray hits the diagonal that two triangles share.
 pub(crate) struct Room {
     tracer: Tracer,
 }
 
 impl Room {
-    /// The floor with rectangles 200 m long that begin at `x` at these heights over it.
+    /// Creates the floor and a rectangle for each roof: 200 m long, starting at `x`, at a height over the
+    /// floor.
     fn new(roofs: &[(f32, f32)]) -> Self {
         let rectangles = std::iter::once(&(-100.0, 0.0)).chain(roofs);
         let triangles = rectangles.flat_map(|(x, height)| {
@@ -74,12 +75,12 @@ impl Room {
         VisiblePoints::trace(&self.tracer, &Self::frame(), 1)
     }
 
-    /// A map of 1024 texels over 8 m around the origin, from height 8 down to -8.
+    /// Returns a map of 1024 texels over 8 m around the origin, from height 8 m down to -8 m.
     pub(crate) fn map() -> FitMap {
         Self::map_around(DVec2::ZERO, 8.0, 8.0)
     }
 
-    /// A map of 1024 texels over `width` metres around (x, z), from height `top` 16 m down.
+    /// Returns a map of 1024 texels over `width` metres around (x, z), from height `top` 16 m down.
     fn map_around(centre: DVec2, width: f64, top: f64) -> FitMap {
         let light_from_world = look_to_mat4(DVec3::new(centre.x, top, centre.y), DVec3::NEG_Y, DVec3::NEG_Z);
         let half = width * 0.5;
@@ -93,13 +94,13 @@ fn prepared(map: &FitMap) -> MeasuredMap {
     map.measured(DVec3::Y)
 }
 
-/// Measures of maps on the floor under roofs.
+/// Measures maps on the floor under roofs.
 fn tally(roofs: &[(f32, f32)], maps: &[FitMap], depth_clamp: bool) -> Tally {
     let maps: Vec<MeasuredMap> = maps.iter().map(prepared).collect();
     measure(&Room::new(roofs).visible(), &FrameMaps { maps: &maps, previous: None, depth_clamp })
 }
 
-/// Measures of how `then` became `now`.
+/// Measures the crawl between two maps.
 fn shimmer(then: &FitMap, now: &FitMap) -> Shimmer {
     let frame = FrameMaps {
         maps: &[prepared(now)],
@@ -109,7 +110,7 @@ fn shimmer(then: &FitMap, now: &FitMap) -> Shimmer {
     measure(&Room::new(&[]).visible(), &frame).shimmer
 }
 
-/// The same map with depth turned round.
+/// Returns the same map with reversed depth.
 fn reversed(map: &FitMap) -> FitMap {
     let turn = DMat4::from_translation(DVec3::Z) * DMat4::from_scale(DVec3::new(1.0, 1.0, -1.0));
     FitMap { view_proj: (turn * map.clip_from_world()).to_cols_array(), ..map.clone() }
@@ -141,7 +142,7 @@ fn every_occluder_of_a_point_is_kept_whichever_way_it_faces() {
     for point in &visible.points {
         let mut heights: Vec<f64> = visible.occluders_of(point).map(|occluder| occluder.y).collect();
         heights.sort_by(f64::total_cmp);
-        // Distances begin a millimetre above the point.
+        // Distances are measured from 1 mm above the point.
         let wanted: &[f64] = if point.position.x > 0.0 { &[5.999, 8.999] } else { &[8.999] };
         assert!(heights.len() == wanted.len() && heights.iter().zip(wanted).all(|(a, b)| close(*a, *b)), "{heights:?}");
     }
@@ -187,7 +188,7 @@ fn one_pixel_per_texel_is_not_undersampled_and_the_worse_axis_counts_in_maps_tha
     let error = (8.0 / 1024.0 / PIXEL).log2();
     let found = |histogram: &Histogram| histogram.log2_quantile(0.5).expect("points");
     assert!((found(&tally.pixels_per_texel) - error).abs() <= 0.5 / 128.0);
-    // As many texels as a square of 2048.
+    // The map has the texel count of a square of 2048.
     assert!((found(&tally.critical) - (error + 11.0)).abs() <= 0.5 / 128.0);
 }
 
@@ -212,7 +213,7 @@ fn grazing_surfaces_are_left_out_of_pixels_per_texel_alone() {
 
 #[test]
 fn points_beside_every_map_are_uncovered_and_left_out_of_the_rest() {
-    // Its left border goes through the middle of the picture.
+    // The left border of this map goes through the middle of the picture.
     let half = Room::map_around(DVec2::new(4.0, 0.0), 8.0, 8.0);
     let tally = tally(&[(-100.0, 6.0)], &[half], false);
     assert_eq!((tally.uncovered, tally.covered()), (POINTS / 2, POINTS / 2));
@@ -228,7 +229,7 @@ fn a_point_reads_the_first_map_beyond_its_depth_that_holds_it() {
     let too_near = FitMap { split_far: EYE - 0.01, ..Room::map() };
     let alone = tally(&[], std::slice::from_ref(&coarse), false);
     assert_eq!(tally(&[], &[too_near, coarse.clone()], false).pixels_per_texel, alone.pixels_per_texel);
-    // The near map holds one half: the far one is read for the other.
+    // The near map covers half of the points. The others read the far map.
     let mixed = tally(&[], &[fine_half, coarse], false);
     assert_eq!((octaves(&mixed, 0.5), octaves(&mixed, 0.51), mixed.uncovered), (1.0, 2.0, 0));
     // No map ends beyond the floor.
@@ -255,7 +256,7 @@ fn a_caster_before_the_near_plane_is_lost_unless_the_renderer_clamps_depth() {
 
 #[test]
 fn a_map_is_used_where_the_picture_is() {
-    // The picture takes 160 by 90 of the map's 256 by 256 cells.
+    // The picture covers 160×90 of the map's 256×256 cells.
     let width = 4.0 / 90.0 * 256.0;
     let tally = tally(&[], &[Room::map_around(DVec2::ZERO, width, 8.0), Room::map()], false);
     assert!(close(tally.used, 160.0 * 90.0 / 65536.0), "{}", tally.used);
@@ -307,12 +308,12 @@ fn points_are_kept_that_read_the_same_texels_of_the_same_map_as_before() {
     let moved = |x: f64| [Room::map_around(DVec2::X * x * texel, 8.0, 8.0)];
     assert_eq!(kept(&moved(3.0), &moved(0.0), &camera), Kept { points: all, kept: all });
     assert_eq!(kept(&moved(0.3), &moved(0.0), &camera), Kept { points: all, kept: 0 });
-    // Points that go from one map to another are not kept, although no map moved.
+    // Points that change from one map to another are not kept, although no map moved.
     let both = kept(&[small(), Room::map()], &[small(), Room::map()], &camera);
     let entered = kept(&[small(), Room::map()], &[Room::map_around(DVec2::X * 50.0, 2.0, 8.0), Room::map()], &camera);
     assert_eq!((both.points, both.kept, entered.points), (all, all, all));
     assert!(entered.kept > 0 && entered.kept < all, "{entered:?}");
-    // What was not in view, or had no map, is not counted.
+    // Points that were not in view, or had no map, are not counted.
     assert_eq!(kept(&moved(0.0), &moved(0.0), &Frame { far: 1.0, ..Room::frame() }).points, 0);
     assert_eq!(kept(&moved(0.0), &[], &camera).points, 0);
 }

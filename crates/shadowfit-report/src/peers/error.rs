@@ -1,22 +1,22 @@
-//! Files that cannot be used: which file, which part of it, and why, in readable messages.
+//! Errors in input files: the file, the element, and the reason.
 
 use std::path::{Path, PathBuf};
 
 use serde::de::DeserializeOwned;
 
-/// Why a file of scenarios or fits was refused.
+/// An error in a file of scenarios or fits.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{}: {element}: {reason}", file.display())]
 pub struct PeersError {
     /// The file.
     pub file: PathBuf,
-    /// The part of it, such as `frames[3].maps[0].view_proj`, or `file` for the whole.
+    /// The wrong element, such as `frames[3].maps[0].view_proj`, or `file` for the whole file.
     pub element: String,
-    /// What is wrong with it.
+    /// The reason.
     pub reason: String,
 }
 
-/// A wrong element, before the file's name is known.
+/// A wrong element, without the name of its file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Problem {
     element: String,
@@ -24,12 +24,12 @@ pub(crate) struct Problem {
 }
 
 impl Problem {
-    /// `element` is wrong because of `reason`.
+    /// Creates a problem of `element` with a reason.
     pub(crate) fn new(element: impl Into<String>, reason: impl Into<String>) -> Self {
         Self { element: element.into(), reason: reason.into() }
     }
 
-    /// Names the file.
+    /// Adds the file's name.
     pub(crate) fn at(self, file: &Path) -> PeersError {
         PeersError { file: file.to_owned(), element: self.element, reason: self.reason }
     }
@@ -42,7 +42,7 @@ pub(crate) fn read_json<T: DeserializeOwned>(file: &Path) -> Result<T, PeersErro
     parse_json(&text).map_err(|problem| problem.at(file))
 }
 
-/// Parses JSON; the element of a problem is its path, such as `frames[3].view`.
+/// Parses JSON. The element of a problem is its path, such as `frames[3].view`.
 pub(crate) fn parse_json<T: DeserializeOwned>(text: &[u8]) -> Result<T, Problem> {
     let mut json = serde_json::Deserializer::from_slice(text);
     let value = serde_path_to_error::deserialize(&mut json)
@@ -51,12 +51,12 @@ pub(crate) fn parse_json<T: DeserializeOwned>(text: &[u8]) -> Result<T, Problem>
     Ok(value)
 }
 
-/// Readable name of a path in JSON; that of the whole is "." or, where nothing was read, "?".
+/// Returns a readable name of a path in JSON. The path of the whole file is "." or, if nothing was read, "?".
 fn element(path: &str) -> &str {
     if matches!(path, "." | "?") { "file" } else { path }
 }
 
-/// A problem unless all `values` are finite.
+/// Returns a problem unless all `values` are finite.
 pub(crate) fn check_finite(element: impl Fn() -> String, values: &[f64]) -> Result<(), Problem> {
     match values.iter().find(|value| !value.is_finite()) {
         Some(value) => Err(Problem::new(element(), format!("{value} is not finite"))),

@@ -1,4 +1,4 @@
-//! The maps that a fit made for each frame: the files `fits/<peer>.json`.
+//! Fit files: the maps that a fit computed for each frame (`fits/<peer>.json`).
 
 use std::collections::HashMap;
 use std::path::Path;
@@ -29,20 +29,20 @@ pub struct FitFile {
     /// `pancake` in the file.
     #[serde(default, rename = "pancake")]
     pub depth_clamp: bool,
-    /// Median time of one frame's fit, in nanoseconds.
+    /// Median time for fitting one frame, in nanoseconds.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ns_per_fit: Option<f64>,
     /// Median over frames of each frame's fastest batch, in nanoseconds.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ns_quiet: Option<f64>,
-    /// Each frame of the scenarios exactly once, in any order.
+    /// Frames: each frame of the scenarios exactly once, in any order.
     pub frames: Vec<FitFrame>,
 }
 
 /// The maps of a frame.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct FitFrame {
-    /// [`super::Frame::id`].
+    /// Name of the frame, [`super::Frame::id`].
     pub id: String,
     /// Maps, in order of `split_far`.
     pub maps: Vec<FitMap>,
@@ -51,38 +51,40 @@ pub struct FitFrame {
 /// A shadow map.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FitMap {
-    /// Clip from world, column-major: x and y in -1..=1 (y up), depth 0..=1 after division by w,
-    /// plain or reversed. Perspective is allowed.
+    /// Clip-from-world matrix, column-major. x and y are in -1..=1 (y up), and depth is in 0..=1 after
+    /// division by w, plain or reversed. Perspective is allowed.
     pub view_proj: [f64; 16],
-    /// Width and height, in texels, of a square map.
+    /// Side of a square map, in texels.
     #[serde(default, deserialize_with = "whole::number")]
     pub resolution: u32,
-    /// Width and height, in texels, of a map that is not square; `resolution` is ignored then.
+    /// Width and height of a map that is not square, in texels. If present, `resolution` is ignored.
     #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "whole::pair")]
     pub resolution_xy: Option<[u32; 2]>,
-    /// View depth where the map begins, in metres. The measures ignore it.
+    /// View depth at which the map begins, in metres. The measures ignore it.
     #[serde(default)]
     pub split_near: f64,
-    /// View depth below which the map is the first to be read, in metres; [`Self::NO_END`] for a map without an end.
+    /// View depth at which the map ends, in metres. A point reads the first map that ends beyond its view
+    /// depth. [`Self::NO_END`] means that the map does not end.
     pub split_far: f64,
 }
 
 impl FitMap {
-    /// View depth, in metres, from which on a map has no end: files have finite numbers only.
+    /// Smallest `split_far` that means "no end", in metres. JSON has no infinity.
     pub const NO_END: f64 = 1e9;
 
-    /// Width and height, in texels.
+    /// Returns width and height, in texels.
     pub fn size(&self) -> DVec2 {
         let [width, height] = self.resolution_xy.unwrap_or([self.resolution; 2]);
         DVec2::new(f64::from(width), f64::from(height))
     }
 
-    /// Clip from world.
+    /// Returns the clip-from-world matrix.
     pub fn clip_from_world(&self) -> DMat4 {
         DMat4::from_cols_array(&self.view_proj)
     }
 
-    /// The map as the measures take it; `to_light` is the unit direction toward the light, world axes.
+    /// Returns the map in the form for the measures. `to_light` is the unit direction toward the light, world
+    /// axes.
     pub fn measured(&self, to_light: DVec3) -> MeasuredMap {
         MeasuredMap::new(&self.clip_from_world(), self.size(), self.split_far, to_light)
     }
@@ -93,29 +95,29 @@ impl FitFile {
     ///
     /// # Errors
     ///
-    /// When it cannot be read, is not of this format, or an element is impossible.
+    /// If the file cannot be read, does not have this format, or contains an impossible value.
     pub fn read(file: &Path) -> Result<Self, PeersError> {
         let fit: Self = read_json(file)?;
         fit.check().map_err(|problem| problem.at(file))?;
         Ok(fit)
     }
 
-    /// The text of a file from which [`FitFile::read`] gets the same values. `file` is named in errors.
+    /// Returns JSON text that [`FitFile::read`] reads back to the same values. `file` is named in errors.
     ///
     /// # Errors
     ///
-    /// When an element is impossible.
+    /// If a value is impossible.
     pub fn to_json(&self, file: &Path) -> Result<String, PeersError> {
         self.check().map_err(|problem| problem.at(file))?;
         let failed = |error: serde_json::Error| Problem::new("file", error.to_string()).at(file);
         Ok(serde_json::to_string(self).map_err(failed)? + "\n")
     }
 
-    /// The maps of each frame, in the order of the scenarios' frames. `file` is named in errors.
+    /// Returns the maps of each frame, in the order of the scenarios' frames. `file` is named in errors.
     ///
     /// # Errors
     ///
-    /// When a frame is missing, occurs twice, or is not one of the scenarios'.
+    /// If a frame is missing, occurs twice, or is unknown in the scenarios.
     pub fn maps_in_order(&self, scenarios: &Scenarios, file: &Path) -> Result<Vec<&[FitMap]>, PeersError> {
         let problem = |index: usize, reason: String| Problem::new(format!("frames[{index}].id"), reason).at(file);
         let indices: HashMap<&str, usize> =
@@ -252,7 +254,7 @@ mod tests {
         parse_json(text.as_bytes()).map_err(|problem| problem.at(file()))
     }
 
-    /// A file of a single map, which has these fields in addition.
+    /// Returns a file with a single map that has these additional fields.
     fn with_fields(fields: &str) -> String {
         let map = serde_json::to_string(&Room::map()).expect("JSON");
         let plain = map.replace("\"resolution\":1024,", "");

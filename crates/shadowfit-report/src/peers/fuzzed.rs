@@ -1,4 +1,4 @@
-//! What a fuzzer takes for files of fits.
+//! Fuzz target for fit files.
 
 #[cfg(test)]
 #[path = "../../../../tests/fuzz/src/corpus.rs"]
@@ -9,11 +9,11 @@ use glam::DVec3;
 use super::FitFile;
 use super::error::parse_json;
 
-/// Reads a file of fits: it is refused, or its maps can be measured and it is written so that it reads back the same.
+/// Reads a fit file. A file that is accepted must be measurable, and it must read back equal after writing.
 ///
 /// # Panics
 ///
-/// When it is neither.
+/// If a file is accepted and one of these fails.
 pub fn fit_file(data: &[u8]) {
     let Some(fit) = read(data) else { return };
     let written = serde_json::to_vec(&fit).expect("JSON");

@@ -1,4 +1,4 @@
-//! The measures of one frame's maps, over the points that its camera sees.
+//! Measures the maps of a frame at its visible points.
 
 use glam::{DVec2, DVec3};
 use shadowfit_truth::{MIN_FACING, MapGradients, MeasuredMap, OccluderPlace, SelectedMap, pixels_per_texel};
@@ -8,35 +8,35 @@ use super::scenarios::Frame;
 use super::tally::{Shimmer, Tally};
 use super::visible::{VisiblePoint, VisiblePoints};
 
-/// Every 23rd visible point is looked up in the frame before. It shares no factor with the 320 rays of
-/// a row, so that points in all columns are.
+/// Interval of visible points that are compared with the previous frame. It has no common factor with the 320
+/// rays of a row, so that the compared points lie in all columns.
 const SHIMMER_STEP: u32 = 23;
-/// Points that move by less than this, in texels, stand still.
+/// Movement below which a point counts as still, in texels.
 const STILL_MOVE: f64 = 0.02;
-/// Texels whose size changes by a smaller share than this keep their size.
+/// Relative change of a texel's size below which it counts as constant.
 const STILL_SCALE: f64 = 1e-4;
 
-/// The maps of one frame and of the frame before.
+/// The maps of a frame and of the previous frame.
 #[derive(Clone, Copy, Debug)]
 pub struct FrameMaps<'a> {
     /// Maps, in order of their splits.
     pub maps: &'a [MeasuredMap],
-    /// The frame before on the same path; `None` for the first frame of a path, which has no shimmer.
+    /// The previous frame of the same path. `None` for the first frame of a path, which has no shimmer.
     pub previous: Option<PreviousMaps<'a>>,
     /// Whether the renderer clamps depth, so that casters before the near plane still cast shadows.
     pub depth_clamp: bool,
 }
 
-/// The frame before on the same path.
+/// The previous frame of the same path.
 #[derive(Clone, Copy, Debug)]
 pub struct PreviousMaps<'a> {
-    /// Its camera and light.
+    /// Camera and light.
     pub frame: &'a Frame,
-    /// Its maps, in order of their splits.
+    /// Maps, in order of their splits.
     pub maps: &'a [MeasuredMap],
 }
 
-/// Measures one frame's maps on the points that its camera sees.
+/// Measures the maps of a frame at the points that its camera sees.
 pub fn measure(visible: &VisiblePoints, frame: &FrameMaps) -> Tally {
     let maps = frame.maps;
     let mut tally =
@@ -102,14 +102,14 @@ fn add_pixels_per_texel(tally: &mut Tally, point: &VisiblePoint, choice: &Select
     let pixels_per_texel = pixels_per_texel(jacobian);
     tally.pixels_per_texel.add(pixels_per_texel);
     tally.undersampled += u64::from(pixels_per_texel > 1.0 || pixels_per_texel.is_nan());
-    // The side of a square of as many texels.
+    // The side of a square map with the same number of texels.
     tally.critical.add(pixels_per_texel * (choice.map.size.x * choice.map.size.y).sqrt());
 }
 
-/// How a point moved in the map that it reads, since the frame before.
+/// Movement of a point in the map that it reads, since the previous frame.
 #[derive(Clone, Copy)]
 struct Movement {
-    /// Beyond whole texels, in texels.
+    /// Movement without whole texels, in texels.
     crawl: f64,
     /// Relative change of a texel's side.
     scale: f64,
@@ -121,7 +121,8 @@ impl Movement {
     }
 }
 
-/// How a point moved in the map that it reads; `None` where that map did not hold it in the frame before.
+/// Returns the movement of a point in the map that it reads, or `None` if that map did not cover it in the
+/// previous frame.
 fn movement(
     point: &VisiblePoint,
     choice: &SelectedMap,
@@ -147,14 +148,15 @@ fn add_shimmer(shimmer: &mut Shimmer, moved: Option<Movement>) {
     shimmer.scaled += moved.scale;
 }
 
-/// Returns the map that a point read in the frame before, if that frame's view held the point and a map covered it.
+/// Returns the map that a point read in the previous frame, if that frame's view contained the point and a
+/// map covered it.
 fn map_before<'a>(point: &VisiblePoint, previous: &PreviousMaps<'a>) -> Option<SelectedMap<'a>> {
     let view_depth = previous.frame.view_depth(point.position)?;
     choose(previous.maps, view_depth, point.position)
 }
 
-/// Selects a map as fit files do: the first map whose split is beyond the point's view depth. If that map does not hold
-/// the point, the next later one that does. `None` if no such map holds it.
+/// Selects a map by the rule of fit files: the first map that contains the point, among the maps whose split
+/// is beyond its view depth. Returns `None` if no map qualifies.
 fn choose(maps: &[MeasuredMap], view_depth: f64, point: DVec3) -> Option<SelectedMap<'_>> {
     maps.iter().enumerate().skip_while(|(_, map)| view_depth >= map.split_far).find_map(|(index, map)| {
         let position = map.project(point);
@@ -162,7 +164,7 @@ fn choose(maps: &[MeasuredMap], view_depth: f64, point: DVec3) -> Option<Selecte
     })
 }
 
-/// Texels in a square metre across the light.
+/// Returns the number of texels per square metre across the light.
 fn texel_density(u: DVec3, v: DVec3) -> f64 {
     u.cross(v).length()
 }

@@ -1,9 +1,9 @@
-//! Ranks shadow-map fits by what their maps give to the same frames: how well they cover and sample
-//! what the cameras see.
+//! Ranks shadow-map fits by the maps that they compute for the same frames: how well the maps cover and
+//! sample the visible surfaces.
 //!
-//! [`Scenarios`] has the scenes, cameras and lights, a [`FitFile`] the maps that a fit made for them.
-//! [`VisiblePoints`] is what a frame's camera sees, [`measure()`] measures maps on these points, and a
-//! [`Ranking`] does so for many fits and all frames of a scene. Everything is in world space:
+//! [`Scenarios`] has the scenes, cameras and lights, and a [`FitFile`] has the maps that a fit computed for
+//! them. [`VisiblePoints`] are the visible points of a frame. [`measure()`] measures maps at these points,
+//! and a [`Ranking`] does so for many fits and all frames of a scene. All coordinates are in world space:
 //! right-handed, y up, metres.
 
 mod cells;

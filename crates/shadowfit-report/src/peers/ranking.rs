@@ -1,4 +1,4 @@
-//! Many fits measured on the frames of a scene, in parallel over the frames.
+//! Measures many fits on the frames of a scene, in parallel over the frames.
 
 use std::path::Path;
 
@@ -20,7 +20,7 @@ pub struct Ranking {
     fits: Vec<Fit>,
 }
 
-/// A fit, and its sums so far.
+/// A fit and its sums so far.
 #[derive(Clone, Debug)]
 struct Fit {
     peer: String,
@@ -32,21 +32,21 @@ struct Fit {
 }
 
 impl Ranking {
-    /// A ranking without fits.
+    /// Creates a ranking without fits.
     pub fn new(scenarios: Scenarios) -> Self {
         Self { scenarios, fits: Vec::new() }
     }
 
-    /// The scenes and frames.
+    /// Returns the scenes and frames.
     pub fn scenarios(&self) -> &Scenarios {
         &self.scenarios
     }
 
-    /// Adds a fit; `file` is named in errors.
+    /// Adds a fit. `file` is named in errors.
     ///
     /// # Errors
     ///
-    /// When a frame of the scenarios is missing or occurs twice, or the fit has one that they do not.
+    /// If the fit lacks a frame of the scenarios, has a frame twice, or has an unknown frame.
     pub fn add(&mut self, fit: &FitFile, file: &Path) -> Result<(), PeersError> {
         let in_order = fit.maps_in_order(&self.scenarios, file)?;
         let prepare = |(frame, maps): (&Frame, &[FitMap])| -> Vec<MeasuredMap> {
@@ -62,8 +62,8 @@ impl Ranking {
         Ok(())
     }
 
-    /// Measures all frames of a scene, on all cores, with the scene's triangles in `tracer`. `stride` is
-    /// that of [`VisiblePoints::trace`]; `frame_done` is called once for each frame.
+    /// Measures all frames of a scene on all cores. `tracer` holds the scene's triangles, and `stride` is the
+    /// argument of [`VisiblePoints::trace`]. `frame_done` is called once per frame.
     pub fn measure_scene(&mut self, scene: usize, tracer: &Tracer, stride: u32, frame_done: &(impl Fn() + Sync)) {
         let frames: Vec<usize> =
             (0..self.scenarios.frames.len()).filter(|index| self.scenarios.frames[*index].scene == scene).collect();
@@ -75,7 +75,7 @@ impl Ranking {
                 tallies
             })
             .collect();
-        // Merged in order, so that sums do not depend on which core finished first.
+        // Merge in frame order, so that sums do not depend on the timing of the cores.
         for (frame, tallies) in frames.iter().zip(tallies) {
             let frame = &self.scenarios.frames[*frame];
             let (scene, group) = (&self.scenarios.scenes[frame.scene].name, self.scenarios.group(frame));
@@ -85,20 +85,21 @@ impl Ranking {
         }
     }
 
-    /// Adds the sums of a judged picture. `fit` is the index of the fit in the order in which fits were
-    /// added, `frame` that of the frame in the scenarios. To get the same sums to the last bit, add
-    /// pictures in the same order.
+    /// Adds the sums of a judged picture. `fit` is the index of the fit in the order of [`Self::add`], and
+    /// `frame` is the index of the frame in the scenarios. Sums are equal to the last bit only if pictures
+    /// are added in the same order.
     ///
     /// # Panics
     ///
-    /// If there is no such fit or frame.
+    /// If `fit` or `frame` is out of range.
     pub fn add_picture(&mut self, fit: usize, frame: usize, pictures: &PictureTally) {
         let frame = &self.scenarios.frames[frame];
         let (scene, group) = (&self.scenarios.scenes[frame.scene].name, self.scenarios.group(frame));
         self.fits[fit].group(scene, &group).pictures.merge(pictures);
     }
 
-    /// The tables of the fits, in the order in which they were added, over all scenes measured so far.
+    /// Returns the tables of the fits, in the order in which they were added, over all scenes measured so
+    /// far.
     pub fn tables(&self) -> Vec<FitTable> {
         let table = |fit: &Fit| FitTable::new(&fit.peer, fit.nanoseconds, &fit.groups);
         self.fits.iter().map(table).collect()
@@ -121,7 +122,7 @@ impl Ranking {
 }
 
 impl Fit {
-    /// The sums of a group, which is added when it is new.
+    /// Returns the sums of a group. Adds the group if it is new.
     fn group(&mut self, scene: &str, group: &str) -> &mut GroupTally {
         let index = self.groups.iter().position(|known| known.group == group).unwrap_or_else(|| {
             self.groups.push(GroupTally {

@@ -1,6 +1,6 @@
-//! Scenes, cameras and lights on which fits are compared: the file `scenarios.json`.
+//! Scenes, cameras and lights for comparing fits: the file `scenarios.json`.
 //!
-//! World: right-handed, y up, metres. Matrices: 16 numbers, column-major, for column vectors.
+//! World space is right-handed, y up, in metres. Matrices are 16 numbers, column-major, for column vectors.
 
 use std::path::Path;
 
@@ -16,32 +16,32 @@ use super::whole;
 pub struct Scenarios {
     /// Scenes.
     pub scenes: Vec<Scene>,
-    /// Frames; those of one path (same scene and light) are consecutive and in order.
+    /// Frames. The frames of a path (same scene and light) are consecutive and in order.
     pub frames: Vec<Frame>,
 }
 
 /// A scene.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Scene {
-    /// Name, the first part of its frames' ids.
+    /// Name. It is the first part of the ids of its frames.
     pub name: String,
     /// glTF file, relative to the folder of assets. `None` for a scene that is only known as a list of
     /// triangles.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub file: Option<String>,
-    /// Metres in a unit of the glTF file: world coordinates, after the nodes' transforms, are multiplied
-    /// by it.
+    /// Metres per unit of the glTF file. World coordinates, after the nodes' transforms, are multiplied by
+    /// it.
     pub scale: f64,
-    /// Ground that is added to the glTF file's objects, as the last one.
+    /// Ground, added as the last object after the objects of the glTF file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ground: Option<Ground>,
-    /// Number of triangles, ground included.
+    /// Number of triangles, including the ground.
     #[serde(deserialize_with = "whole::number")]
     pub triangles: usize,
-    /// World boxes of the objects, min x, y, z, max x, y, z, in metres: one for each node with a mesh,
-    /// depth first, then the ground.
+    /// World-space boxes of the objects: min x, y, z, max x, y, z, in metres. One box for each node with a
+    /// mesh, depth first, then the ground.
     pub objects: Vec<[f64; 6]>,
-    /// World box of all objects, in the same form.
+    /// World-space box of all objects, in the same form.
     pub aabb: [f64; 6],
 }
 
@@ -67,7 +67,7 @@ pub struct Frame {
     /// Number along the path.
     #[serde(deserialize_with = "whole::number")]
     pub frame: u32,
-    /// View from world; the camera looks down -z.
+    /// View-from-world matrix. The camera looks down -z.
     pub view: [f64; 16],
     /// Vertical field of view, in degrees.
     pub fov_y_deg: f64,
@@ -77,7 +77,7 @@ pub struct Frame {
     pub near: f64,
     /// Far distance along the view, in metres.
     pub far: f64,
-    /// Unit direction in which the light travels, world axes.
+    /// Unit direction of travel of the light, world axes.
     pub light_dir: [f64; 3],
 }
 
@@ -86,23 +86,23 @@ impl Scenarios {
     ///
     /// # Errors
     ///
-    /// When it cannot be read, is not of this format, or an element is impossible.
+    /// If the file cannot be read, does not have this format, or contains an impossible value.
     pub fn read(file: &Path) -> Result<Self, PeersError> {
         let scenarios: Self = read_json(file)?;
         scenarios.check().map_err(|problem| problem.at(file))?;
         Ok(scenarios)
     }
 
-    /// Name of the group that a frame belongs to, its scene under its light: `town/45`.
+    /// Returns the name of a frame's group, which is its scene under its light: `town/45`.
     ///
     /// # Panics
     ///
-    /// If the frame's scene is not one of these.
+    /// If the index of the frame's scene is out of range.
     pub fn group(&self, frame: &Frame) -> String {
         format!("{}/{}", self.scenes[frame.scene].name, frame.elevation_deg)
     }
 
-    /// Index of the frame before `index` on the same path; `None` for the first one of a path.
+    /// Returns the index of the previous frame of the same path, or `None` for the first frame of a path.
     pub fn previous(&self, index: usize) -> Option<usize> {
         let (now, before) = (&self.frames[index], index.checked_sub(1)?);
         let then = &self.frames[before];
@@ -137,22 +137,22 @@ impl Scenarios {
 }
 
 impl Frame {
-    /// View from world.
+    /// Returns the view-from-world matrix.
     pub fn view_from_world(&self) -> DMat4 {
         DMat4::from_cols_array(&self.view)
     }
 
-    /// Unit direction toward the light, world axes.
+    /// Returns the unit direction toward the light, world axes.
     pub fn to_light(&self) -> DVec3 {
         -DVec3::from_array(self.light_dir)
     }
 
-    /// Tangent of half of the vertical field of view.
+    /// Returns the tangent of half of the vertical field of view.
     pub fn tan_half_fov(&self) -> f64 {
         (self.fov_y_deg.to_radians() * 0.5).tan()
     }
 
-    /// The camera: its eye in f64, the rest rounded to f32.
+    /// Returns the camera. Its eye is in f64, and all other values are rounded to f32.
     pub fn camera(&self) -> PerspectiveCamera {
         let world_from_view = self.view_from_world().inverse();
         PerspectiveCamera {
@@ -166,7 +166,8 @@ impl Frame {
         }
     }
 
-    /// View depth of a world position, in metres, where it lies inside the view, near and far included.
+    /// Returns the view depth of a world position, in metres, or `None` outside the view. Near and far planes
+    /// are inside.
     pub fn view_depth(&self, point: DVec3) -> Option<f64> {
         let p = self.view_from_world().transform_point3(point);
         let (depth, tan) = (-p.z, self.tan_half_fov());
@@ -215,7 +216,7 @@ mod tests {
         assert_eq!(scenarios.group(&scenarios.frames[1]), "room/45");
     }
 
-    /// What spoils the scenarios, and the message that says so.
+    /// A change that breaks the scenarios, and the expected message.
     type Case = (fn(&mut Scenarios), &'static str);
 
     #[test]
@@ -241,7 +242,7 @@ mod tests {
             assert_eq!(refused(change), format!("scenarios.json: {message}"));
         }
     }
-    /// The scenarios as JSON, changed.
+    /// Returns the scenarios read from changed JSON.
     fn json(change: fn(&mut serde_json::Value)) -> Result<Scenarios, String> {
         let mut value = serde_json::to_value(scenarios(2)).expect("JSON");
         change(&mut value);
@@ -259,7 +260,7 @@ mod tests {
         assert_eq!(found, Ok(scenarios(2)));
     }
 
-    /// What spoils the scenarios' JSON, and the message that says so.
+    /// A change that breaks the scenarios' JSON, and the expected message.
     type JsonCase = (fn(&mut serde_json::Value), &'static str);
 
     #[test]

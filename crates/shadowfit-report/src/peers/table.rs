@@ -1,4 +1,4 @@
-//! The columns of a fit, pooled over all frames, over a scene's and over those of a scene under one light.
+//! The columns of a fit, pooled over all frames, over each scene, and over each scene under one light.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -14,44 +14,44 @@ use crate::markdown::{markdown_table, readable};
 
 /// Number of depths that a 24-bit map can store.
 const DEPTH_STEPS: f64 = (1u64 << 24) as f64;
-/// Share of the points that have at most a pixel per texel at the critical resolution.
+/// Share of the points that have at most one pixel per texel at the critical resolution.
 const CRITICAL_QUANTILE: f64 = 0.95;
 
-/// The measures of a fit over a set of frames. A value for which nothing could be measured is not a number.
+/// The measures of a fit over a set of frames. A value that could not be measured is NaN.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
     /// Maps in a frame.
     pub maps: f64,
-    /// Percentage of the facing points that no map covers; they are left out of all that follows.
+    /// Percentage of the facing points that no map covers. All further measures leave these points out.
     pub uncovered: f64,
-    /// Percentage of the covered shadowed points that have no occluder in their map, or before its near
-    /// plane where the renderer clamps depth: their shadow is lost.
+    /// Percentage of the covered shadowed points whose shadow is lost: no occluder is in the map, nor before
+    /// its near plane if the renderer clamps depth.
     pub lost: f64,
-    /// The same without depth clamp.
+    /// Percentage of lost points without depth clamp.
     pub lost_unclamped: f64,
     /// Quantiles 50%, 95% and 99% of log2 of pixels per texel along the worse axis: 0 for one pixel per
     /// texel, 1 for two.
     pub error: [f64; 3],
     /// Percentage of points with more than one pixel per texel.
     pub undersampled: f64,
-    /// Critical resolution, in texels: the side of the maps at which 95% of the points have at most a
-    /// pixel per texel.
+    /// Critical resolution, in texels: the side of the maps at which 95% of the points have at most one pixel
+    /// per texel.
     pub critical: f64,
     /// Geometric mean of the groups' critical resolutions, in texels.
     pub critical_mean: f64,
     /// Percentage of a map's area that visible points need.
     pub used: f64,
-    /// Mean of how far points move in their map between frames beyond whole texels, in texels.
+    /// Mean movement of points in their map between frames, without whole texels, in texels.
     pub shimmer: f64,
     /// Percentage of points that move by less than 0.02 texels and whose texels keep their size.
     pub still: f64,
-    /// Percentage of the points in the view of the frame before that read the same texels as then.
+    /// Percentage of the points in the previous frame's view that read the same texels in both frames.
     pub kept: f64,
     /// Mean relative change of a texel's side between frames, in per cent.
     pub scale: f64,
     /// Mean depth step of a 24-bit map, in micrometres along the light.
     pub depth: f64,
-    /// Titles and values of further columns, of judged pictures. Empty where none were drawn.
+    /// Titles and values of further columns, of judged pictures. Empty if no pictures were drawn.
     pub pictures: Vec<(&'static str, f64)>,
 }
 
@@ -62,9 +62,9 @@ pub struct GroupTally {
     pub scene: String,
     /// Name of the group, such as `town/45`.
     pub group: String,
-    /// The sums of its frames.
+    /// Sums of its frames.
     pub tally: Tally,
-    /// The sums of its judged pictures.
+    /// Sums of its judged pictures.
     pub pictures: PictureTally,
 }
 
@@ -73,7 +73,7 @@ pub struct GroupTally {
 pub struct FitTable {
     /// Name of the fit.
     pub peer: String,
-    /// Time of one frame's fit, in nanoseconds, as its file says.
+    /// Time of one frame's fit, in nanoseconds, from the fit file.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ns_per_fit: Option<f64>,
     /// All frames pooled.
@@ -87,7 +87,7 @@ pub struct FitTable {
 }
 
 impl Row {
-    /// The row of several groups, pooled.
+    /// Returns the pooled row of several groups.
     pub fn pooled<'a>(groups: impl Iterator<Item = &'a GroupTally>) -> Self {
         let (mut pool, mut pictures) = (Tally::default(), PictureTally::default());
         let mut log2_criticals = Vec::new();
@@ -100,7 +100,7 @@ impl Row {
         Self { critical_mean: mean.exp2(), ..Self::of(&pool, &pictures) }
     }
 
-    /// The row of one group.
+    /// Returns the row of one group.
     pub fn of(tally: &Tally, pictures: &PictureTally) -> Self {
         let ratio = |part: f64, whole: u64| part / whole as f64;
         let percentage = |part: u64, whole: u64| 100.0 * ratio(part as f64, whole);
@@ -124,7 +124,7 @@ impl Row {
         }
     }
 
-    /// Titles and values of the columns.
+    /// Returns titles and values of the columns.
     pub fn columns(&self) -> Vec<(&'static str, f64)> {
         let mut columns = vec![
             ("maps", self.maps),
@@ -149,7 +149,7 @@ impl Row {
     }
 }
 
-/// The columns of judged pictures, without that of uncovered points, which the fit has itself.
+/// Returns the columns of judged pictures, except uncovered points, which the fit has itself.
 fn picture_columns(pictures: &PictureTally) -> Vec<(&'static str, f64)> {
     if pictures.frames == 0 {
         return Vec::new();
@@ -158,7 +158,7 @@ fn picture_columns(pictures: &PictureTally) -> Vec<(&'static str, f64)> {
 }
 
 impl Serialize for Row {
-    /// A map from column names to values; `null` for values that are not finite.
+    /// Writes a map from column names to values, with `null` for values that are not finite.
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let columns = self.columns();
         let mut map = serializer.serialize_map(Some(columns.len()))?;
@@ -170,7 +170,7 @@ impl Serialize for Row {
 }
 
 impl FitTable {
-    /// The rows of a fit from the sums of its groups.
+    /// Computes the rows of a fit from the sums of its groups.
     pub fn new(peer: &str, ns_per_fit: Option<f64>, groups: &[GroupTally]) -> Self {
         let mut scenes: Vec<(String, Row)> = Vec::new();
         for GroupTally { scene, .. } in groups {
@@ -189,7 +189,8 @@ impl FitTable {
     }
 }
 
-/// Tables of fits as JSON: `{"fits": [{"peer": .., "overall": {column: value}, "scenes": {..}, "groups": {..}}]}`.
+/// Returns tables of fits as JSON: `{"fits": [{"peer": .., "overall": {column: value}, "scenes": {..},
+/// "groups": {..}}]}`.
 ///
 /// # Panics
 ///
@@ -199,7 +200,7 @@ pub fn to_json(tables: &[FitTable]) -> String {
     serde_json::to_string_pretty(&root).expect("numbers and names can be written") + "\n"
 }
 
-/// Tables of fits as Markdown: all frames, each scene, and critical resolutions of the groups.
+/// Returns tables of fits as Markdown: all frames, each scene, and critical resolutions of the groups.
 pub fn to_markdown(tables: &[FitTable]) -> String {
     let mut text = format!("## Overall\n\n{}", overall_markdown(tables));
     for (scene, _) in tables.iter().flat_map(|table| &table.scenes).take(tables.first().map_or(0, |t| t.scenes.len())) {
@@ -210,7 +211,7 @@ pub fn to_markdown(tables: &[FitTable]) -> String {
     text
 }
 
-/// The rows over all frames as a Markdown table.
+/// Returns the rows over all frames as a Markdown table.
 pub fn overall_markdown(tables: &[FitTable]) -> String {
     rows_markdown(tables.iter().map(|table| (table.peer.clone(), table.overall.clone())).collect())
 }
@@ -234,7 +235,7 @@ fn of_peers(names: impl Iterator<Item = String>, rows: impl Iterator<Item = (Str
     markdown_table(&columns, rows.map(|(peer, cells)| [vec![peer], cells].concat()))
 }
 
-/// A readable number: whole texels, everything else as [`readable`].
+/// Returns a readable number: whole texels, otherwise as [`readable`].
 fn cell(column: &str, value: f64) -> String {
     if column.starts_with("crit") && value.is_finite() { format!("{value:.0}") } else { readable(value) }
 }
@@ -255,7 +256,7 @@ fn as_map<S: Serializer>(rows: &[(String, Row)], serializer: S) -> Result<S::Ok,
 mod tests {
     use super::*;
 
-    /// A group of one point with 2^`octaves` pixels per texel, in a map of one texel.
+    /// Returns a group of one point with 2^`octaves` pixels per texel, in a map of one texel.
     fn group(scene: &str, group: &str, octaves: i32) -> GroupTally {
         let mut tally = Tally { frames: 1, maps: 1, facing: 4, uncovered: 1, ..Tally::default() };
         tally.pixels_per_texel.add(f64::from(octaves).exp2());

@@ -1,8 +1,8 @@
-//! Sums over the frames on which a fit is measured; sums of frames can be merged.
+//! Sums over the frames of a measured fit. Sums of frames can be merged.
 
 use shadowfit_truth::Histogram;
 
-/// Sums of points and maps, from which the columns of a table follow.
+/// Sums over points and maps. The columns of a table are computed from them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Tally {
     /// Number of frames.
@@ -11,52 +11,52 @@ pub struct Tally {
     pub maps: u64,
     /// Visible points that face the light.
     pub facing: u64,
-    /// Those of them that no map covers.
+    /// Facing points that no map covers.
     pub uncovered: u64,
     /// Points that a map covers and that have an occluder.
     pub shadowed: u64,
-    /// Those of them whose occluders the renderer loses.
+    /// Shadowed points whose occluders the renderer loses.
     pub lost: u64,
-    /// Those of them whose occluders are not in the map's volume.
+    /// Shadowed points whose occluders are outside the map's volume.
     pub lost_unclamped: u64,
     /// Pixels per texel along the worse axis, of covered points that are not grazing.
     pub pixels_per_texel: Histogram,
     /// Points in `pixels_per_texel` with more than one pixel per texel.
     pub undersampled: u64,
-    /// Pixels per texel times the side, in texels, of a square map of as many texels: the side at which
-    /// the point would have one pixel per texel.
+    /// Pixels per texel times the side of a square map with the same number of texels: the side, in texels,
+    /// at which the point would have one pixel per texel.
     pub critical: Histogram,
     /// Sum over maps of the share of their area, 0..=1, that visible points need.
     pub used: f64,
     /// Crawl between frames.
     pub shimmer: Shimmer,
-    /// Texels that are read again.
+    /// Points that read the same texels as in the previous frame.
     pub kept: Kept,
-    /// Sum over covered points of the metres along the light that depth 0..=1 spans.
+    /// Sum over covered points of the depth range 0..=1 of their map, in metres along the light.
     pub depth_range: f64,
 }
 
-/// How maps move between frames of a path.
+/// Movement of maps between the frames of a path.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Shimmer {
-    /// Points that were compared with the frame before.
+    /// Points that were compared with the previous frame.
     pub points: u64,
-    /// Sum of how far each moved in its map beyond whole texels, in texels.
+    /// Sum of the points' movements in their maps, without whole texels, in texels.
     pub moved: f64,
-    /// Points that moved by less than 0.02 texels and whose texels' size changed by less than 0.01%.
+    /// Points that moved by less than 0.02 texels and whose texel size changed by less than 0.01%.
     pub still: u64,
     /// Sum of the relative changes of a texel's side.
     pub scaled: f64,
 }
 
-/// How many points read the same texels as in the frame before. Unlike [`Shimmer::still`] it counts points that
-/// go from one map to another.
+/// Number of points that read the same texels as in the previous frame. Unlike [`Shimmer::still`], it counts
+/// points that change from one map to another as compared, but not as kept.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Kept {
-    /// Points that were in the view of the frame before, and read some map then.
+    /// Points that were in the previous frame's view and read a map there.
     pub points: u64,
-    /// Those of them that read the map with the same index, moved by whole texels, with texels of the same
-    /// size.
+    /// Points that read the map with the same index in both frames, where it moved by whole texels and kept
+    /// its texel size.
     pub kept: u64,
 }
 
@@ -80,7 +80,7 @@ impl Tally {
         self.depth_range += other.depth_range;
     }
 
-    /// Points that a map covers.
+    /// Returns the number of points that a map covers.
     pub fn covered(&self) -> u64 {
         self.facing - self.uncovered
     }

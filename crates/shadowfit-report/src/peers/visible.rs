@@ -1,6 +1,6 @@
-//! The points that a frame's camera sees on surfaces that face the light, and their occluders.
+//! The visible points of a frame on surfaces that face the light, and their occluders.
 //!
-//! Rays look for triangles in f32; every hit is refined to its triangle's plane in f64.
+//! Rays search triangles in f32. Every hit is then refined in f64 with the plane of its triangle.
 
 use std::ops::Range;
 
@@ -11,9 +11,9 @@ use shadowfit_truth::{PixelCamera, Tracer, slide};
 
 /// Number of rays across and down a frame.
 pub const RAYS: [u32; 2] = [320, 180];
-/// Height, in pixels, of the screen whose pixels are compared with texels.
+/// Height of the screen whose pixels are compared with texels, in pixels.
 const SCREEN_HEIGHT: f64 = 1080.0;
-/// Start of shadow rays above the surface, in metres.
+/// Distance of the start of shadow rays above the surface, in metres.
 const RAY_OFFSET: f64 = 1e-3;
 
 /// The visible points of a frame that face the light.
@@ -21,22 +21,22 @@ const RAY_OFFSET: f64 = 1e-3;
 pub struct VisiblePoints {
     /// Points, in rows from the top.
     pub points: Vec<VisiblePoint>,
-    /// Number of visible points, those that face away from the light included.
+    /// Number of visible points, including points that face away from the light.
     pub visible: u32,
     /// Unit direction toward the light, world axes.
     pub to_light: DVec3,
-    /// Side, in pixels, of the square that a ray stands for: 6 where every ray is traced.
+    /// Side of the square of pixels that a ray represents: 6 if every ray is traced.
     pub pixels_per_ray: f64,
-    /// Distances of the occluders along `to_light`, in metres: each point has a range of it.
+    /// Distances of the occluders along `to_light`, in metres. Each point has a range of this list.
     pub occluders: Vec<f64>,
 }
 
 /// A visible point that faces the light. World space, metres.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VisiblePoint {
-    /// Number among all visible points of the frame, those that face away included.
+    /// Number among all visible points of the frame, including points that face away from the light.
     pub number: u32,
-    /// The point.
+    /// Position.
     pub position: DVec3,
     /// Unit geometric normal on the side of the eye.
     pub normal: DVec3,
@@ -44,17 +44,17 @@ pub struct VisiblePoint {
     pub facing: f64,
     /// Distance from the eye along the view, in metres.
     pub view_depth: f64,
-    /// How far the point moves on its tangent plane for a pixel to the right.
+    /// Movement of the point on its tangent plane per pixel to the right.
     pub pixel_right: DVec3,
-    /// How far the point moves on its tangent plane for a pixel down.
+    /// Movement of the point on its tangent plane per pixel down.
     pub pixel_down: DVec3,
-    /// Its occluders in [`VisiblePoints::occluders`]; empty for a lit point.
+    /// Range of its occluders in [`VisiblePoints::occluders`]. Empty for a lit point.
     pub occluders: Range<usize>,
 }
 
 impl VisiblePoints {
-    /// Traces every `stride`-th ray across and down of a frame through the triangles of its scene. The
-    /// measures are defined for a stride of 1; with more they are faster and approximate.
+    /// Traces every `stride`-th ray of a frame, across and down, through the triangles of its scene. The
+    /// measures are defined for a stride of 1. Larger strides are faster and approximate.
     pub fn trace(tracer: &Tracer, frame: &Frame, stride: u32) -> Self {
         let camera = ray_camera(frame);
         let stride = stride.max(1);
@@ -69,13 +69,13 @@ impl VisiblePoints {
         visible
     }
 
-    /// Positions of a point's occluders, world space, metres.
+    /// Returns the positions of a point's occluders, world space, metres.
     pub fn occluders_of(&self, point: &VisiblePoint) -> impl Iterator<Item = DVec3> {
         let (origin, to_light) = (point.position, self.to_light);
         self.occluders[point.occluders.clone()].iter().map(move |distance| origin + to_light * *distance)
     }
 
-    /// Traces one ray, and counts and keeps the point that it meets.
+    /// Traces one ray and adds the point that it hits.
     fn add(&mut self, tracer: &Tracer, camera: &PixelCamera, direction: DVec3) {
         let Some(hit) = tracer.first_hit(camera.eye.as_vec3(), direction.as_vec3()) else { return };
         let mut normal = tracer.plane_normal(hit.triangle);
@@ -108,7 +108,7 @@ impl VisiblePoints {
         });
     }
 
-    /// Keeps every triangle between a point and the light.
+    /// Adds the occluders of a point: every triangle between the point and the light.
     fn add_occluders(&mut self, tracer: &Tracer, origin: DVec3) -> Range<usize> {
         let first = self.occluders.len();
         let to_light = self.to_light;
@@ -123,7 +123,7 @@ impl VisiblePoints {
     }
 }
 
-/// The camera of a frame and its rays; the distance along one is view depth.
+/// Returns the camera of a frame. Distances along its rays are view depths.
 fn ray_camera(frame: &Frame) -> PixelCamera {
     let view = frame.view_from_world();
     let axis = |row: usize| view.row(row).truncate();

@@ -1,26 +1,25 @@
-//! Whole numbers in JSON, written as `2048` or as `2048.0`: programs of languages without integers
-//! write either.
+//! Whole numbers in JSON, as `2048` or `2048.0`: languages without integers write the second form.
 
 use std::fmt;
 use std::marker::PhantomData;
 
 use serde::de::{self, Deserialize, Deserializer, Visitor};
 
-/// From here on an f64 may stand for several whole numbers: 2^53.
+/// Limit above which an f64 cannot represent every whole number: 2^53.
 const FLOAT_LIMIT: f64 = 9_007_199_254_740_992.0;
 
-/// Reads a whole number that `T` holds.
+/// Reads a whole number that fits in `T`.
 pub(crate) fn number<'de, T: TryFrom<u64>, D: Deserializer<'de>>(deserializer: D) -> Result<T, D::Error> {
     Ok(Whole::deserialize(deserializer)?.0)
 }
 
-/// Reads two whole numbers, or none for `null`.
+/// Reads two whole numbers, or `None` for `null`.
 pub(crate) fn pair<'de, T: TryFrom<u64>, D: Deserializer<'de>>(deserializer: D) -> Result<Option<[T; 2]>, D::Error> {
     let pair = Option::<[Whole<T>; 2]>::deserialize(deserializer)?;
     Ok(pair.map(|pair| pair.map(|Whole(number)| number)))
 }
 
-/// A number that is read as a whole one.
+/// A whole number, read from either form.
 struct Whole<T>(T);
 
 impl<'de, T: TryFrom<u64>> Deserialize<'de> for Whole<T> {

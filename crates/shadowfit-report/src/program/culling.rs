@@ -1,7 +1,8 @@
-//! `shadowfit-report culling`: counts the casters and triangles of each shadow pass of a technique, once with all
-//! casters that its maps can store, and once with the casters alone that can throw a shadow into view.
+//! `shadowfit-report culling`: counts the casters and triangles of each shadow pass of a technique, once with
+//! all casters that its maps can store, and once with only the casters that can throw a shadow into view.
 //!
-//! Prints a table in Markdown, means over the first few frames of each path, except frames that begin a path.
+//! Prints a Markdown table of means over the first few frames of each path, without the frames that begin a
+//! path.
 
 use std::path::PathBuf;
 
@@ -35,22 +36,22 @@ pub(crate) struct Args {
     /// Techniques, by name or as TOML files
     #[arg(long = "technique", value_name = "NAME|FILE", default_values = ["windows-4", "histogram-4"])]
     techniques: Vec<String>,
-    /// What is culled as a whole
+    /// Unit of culling
     #[arg(long, value_enum, default_value = "clusters")]
     casters: Casters,
-    /// Frames of each path
+    /// Number of frames of each path
     #[arg(long, default_value_t = 5, value_name = "N", value_parser = clap::value_parser!(u32).range(2..))]
     frames: u32,
     #[command(flatten)]
     adapter: AdapterOptions,
 }
 
-/// What is culled as a whole.
+/// Unit of culling.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Casters {
     /// The objects of the scenarios
     Objects,
-    /// The clusters of triangles that the fits know
+    /// Clusters of triangles, as for the fits
     Clusters,
 }
 
@@ -60,7 +61,8 @@ struct Place<'a> {
     scene: usize,
 }
 
-/// What each map drew, summed over frames: all that it can store, and what is swept from the view.
+/// Sums over frames of the drawn casters of each map: all that it can store, and all in the volume swept
+/// from the view.
 #[derive(Clone, Copy, Default)]
 struct Sums {
     whole: [MapStatistics; MAX_MAPS],
@@ -106,7 +108,7 @@ fn measure(
     };
     let drawn = Scene::from_objects(name, &casters);
     let mut drawn = GpuScene::new(gpu, layout, &drawn, &drawn.pose(None, 0.0))?;
-    // Only what the shadow passes draw is counted.
+    // The target can be tiny: only the shadow passes are counted.
     let target = renderer.target(gpu, [1, 1]);
     let mut fitter = ShadowFitter::new(&named.technique);
     let (mut sums, atmosphere) = (Sums::default(), Atmosphere::default());
@@ -128,7 +130,7 @@ fn measure(
     Ok(sums)
 }
 
-/// The triangles by cluster.
+/// Returns the triangles of each cluster.
 fn clusters(objects: &[Vec<Corners>]) -> Result<Vec<Vec<Corners>>> {
     let slices: Vec<&[[Vec3; 3]]> = objects.iter().map(Vec::as_slice).collect();
     let clusters = Clusters::build(&slices, Clusters::DEFAULT_LIMIT)?;
@@ -145,7 +147,7 @@ fn add(sums: &mut [MapStatistics; MAX_MAPS], maps: &[MapStatistics]) {
 }
 
 impl Sums {
-    /// The means as cells of a table, one number a map.
+    /// Returns the means as table cells, with one number per map.
     fn row(&self, maps: u32) -> String {
         let frames = f64::from(self.frames.max(1));
         let cell = |maps: &[MapStatistics], number: &dyn Fn(&MapStatistics) -> String| {

@@ -1,4 +1,4 @@
-//! How pictures are drawn and judged: the arguments that all kinds of reports share.
+//! Options for drawing and judging pictures, shared by all kinds of reports.
 
 use anyhow::{Context, Result, bail, ensure};
 use shadowfit::Technique;
@@ -26,24 +26,25 @@ pub(crate) struct Drawing {
     #[arg(
         long,
         value_name = "NAME=TEXELS,...",
-        help = "Biases in texels, such as \"normal_offset=1.5,constant=0.1\": what is not named is 0 [default: what \
-                clears planes with the filter]"
+        help = "Biases in texels, such as \"normal_offset=1.5,constant=0.1\": unnamed ones are 0 [default: just \
+                enough for planes with this filter]"
     )]
     bias: Option<String>,
-    /// Trace edges, with N rays for each pixel that the maps are not sure of; 0 filters them [default: the technique's]
+    /// Trace edges, with N rays for each pixel where the maps are unsure; 0 filters them [default: the
+    /// technique's]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=64))]
     rays: Option<u32>,
-    /// Store depths in a colour texture of 32-bit floats, compared by hand
+    /// Store depths in a colour texture of 32-bit floats and compare them in the shader
     #[arg(long)]
     color_format: bool,
-    /// Units of the scene to a metre: shadow rays start a thousandth of a metre over the surface [default: a thousandth of
-    /// a unit, less in a scene below 2 units, more where coordinates exceed 1000]
+    /// Scene units per metre: shadow rays start 1 mm above the surface [default: a thousandth of a unit, less
+    /// in a scene below 2 units, more where coordinates exceed 1000]
     #[arg(long, value_name = "N", value_parser = positive)]
     units_per_metre: Option<f64>,
-    /// Angular radius of the sun, in degrees (the real one's is 0.27): truth becomes a mean of many rays
+    /// Angular radius of the sun, in degrees (0.27 for the real sun): truth becomes the mean of many rays
     #[arg(long, default_value_t = 0.0, value_name = "DEG", value_parser = radius)]
     sun_radius: f64,
-    /// Rays to a sun that is no point
+    /// Number of rays per pixel to a sun with a radius
     #[arg(long, default_value_t = 64, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
     sun_rays: u32,
     /// Sets a parameter of the techniques, e.g. `splits.count=2`; the viewer's --parameters lists them
@@ -51,10 +52,13 @@ pub(crate) struct Drawing {
     set: Vec<String>,
     #[command(flatten)]
     inputs: InputArgs,
-    /// Leave crawl out, which draws each frame a second time
+    /// Do not measure crawl, which draws each frame a second time
     #[arg(long)]
     no_crawl: bool,
-    /// Compare factors with the light on the area of each pixel, by N x N points of it
+    /// Do not measure ꟻLIP, which draws each frame twice more
+    #[arg(long)]
+    no_flip: bool,
+    /// Compare factors with the light on each pixel's area, sampled at N x N points
     #[arg(long, default_value_t = 0, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=16))]
     area: u32,
     #[command(flatten)]
@@ -74,27 +78,28 @@ impl Drawing {
             sun_rays: self.sun_rays,
             crawl: !self.no_crawl,
             area: self.area,
+            flip: !self.no_flip,
             subject_only: false,
         }
     }
 
-    /// Whether the units are given, by which shadow rays start.
+    /// Returns whether the scene units, which set the start of shadow rays, are given.
     pub(crate) const fn sets_units(&self) -> bool {
         self.units_per_metre.is_some()
     }
 
-    /// What fits are given where no technique says otherwise.
+    /// Returns the inputs of fits for techniques that do not define their own.
     pub(crate) fn inputs(&self) -> Inputs {
         self.inputs.changed(Inputs::default())
     }
 
-    /// Whether something of the techniques is asked for.
+    /// Returns whether the options change the techniques.
     pub(crate) fn changes_techniques(&self) -> bool {
         let has_look_up = self.filter.is_some() || self.bias.is_some() || self.color_format;
         has_look_up || self.rays.is_some() || !self.set.is_empty()
     }
 
-    /// A technique with what is asked for changed.
+    /// Returns a technique with the requested changes.
     pub(crate) fn changed(&self, mut named: NamedTechnique) -> Result<NamedTechnique> {
         named.inputs = self.inputs.changed(named.inputs);
         let technique = &mut named.technique;
@@ -121,12 +126,13 @@ impl Drawing {
         self.filter.unwrap_or(FilterKind::Pcf5x5)
     }
 
-    /// How edges come out, if that is asked for.
+    /// Returns the requested kind of edges, if any.
     pub(crate) fn edges(&self) -> Option<Edges> {
         self.rays.map(|samples| if samples == 0 { Edges::Filtered } else { Edges::Traced { samples } })
     }
 
-    /// The penumbrae of maps that are given: those of the sun that judges them, as wide as they come.
+    /// Returns the softness for maps from fit files: penumbrae of the judging sun, without limit of their
+    /// width.
     pub(crate) fn softness(&self) -> Softness {
         if self.sun_radius == 0.0 {
             return Softness::default();
@@ -139,7 +145,8 @@ impl Drawing {
         if self.color_format { MapFormat::R32Float } else { MapFormat::Depth32Float }
     }
 
-    /// The biases asked for, or those that clear planes with a filter.
+    /// Returns the requested biases, or by default biases that are just large enough for planes with this
+    /// filter.
     pub(crate) fn bias(&self, filter: FilterKind) -> Result<BiasSettings> {
         let Some(text) = &self.bias else { return Ok(BiasSettings::automatic(filter)) };
         let zero =
@@ -157,24 +164,24 @@ impl Drawing {
     }
 }
 
-/// A number above 0.
+/// Parses a number above 0.
 pub(crate) fn positive(text: &str) -> Result<f64> {
-    let value: f64 = text.parse().with_context(|| format!("\"{text}\" is no number"))?;
+    let value: f64 = text.parse().with_context(|| format!("\"{text}\" is not a number"))?;
     ensure!(value.is_finite() && value > 0.0, "{value} is not a number above 0");
     Ok(value)
 }
 
-/// Angular radius of a sun, in degrees.
+/// Parses the angular radius of a sun, in degrees.
 fn radius(text: &str) -> Result<f64> {
-    let value: f64 = text.parse().with_context(|| format!("\"{text}\" is no number"))?;
+    let value: f64 = text.parse().with_context(|| format!("\"{text}\" is not a number"))?;
     ensure!((0.0..=45.0).contains(&value), "{value} degrees; give 0 to 45");
     Ok(value)
 }
 
-fn size(text: &str) -> Result<[u32; 2]> {
+pub(crate) fn size(text: &str) -> Result<[u32; 2]> {
     let sides = text.split_once('x').with_context(|| format!("\"{text}\" is not WxH, such as 1280x720"))?;
     let side = |text: &str| -> Result<u32> {
-        let side: u32 = text.parse().with_context(|| format!("\"{text}\" is no number of pixels"))?;
+        let side: u32 = text.parse().with_context(|| format!("\"{text}\" is not a number of pixels"))?;
         if !(1..=8192).contains(&side) {
             bail!("{side} pixels; give 1 to 8192");
         }
@@ -189,7 +196,7 @@ fn filter(text: &str) -> Result<FilterKind> {
     Ok(technique.filter)
 }
 
-/// The filter of a name, with that name.
+/// Returns the filter of a name, and the name.
 pub(crate) fn named_filter(text: &str) -> Result<(String, FilterKind)> {
     Ok((text.trim().to_owned(), filter(text.trim())?))
 }

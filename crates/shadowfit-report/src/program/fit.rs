@@ -1,5 +1,5 @@
-//! `shadowfit-report fit`: fits shadow maps to the frames of a file of scenarios, for comparison with the fits of other
-//! engines. The command `peers` reads the fit file.
+//! `shadowfit-report fit`: fits shadow maps to the frames of a scenario file, for comparison with the fits of
+//! other engines. The command `peers` reads the resulting fit file.
 
 use std::path::PathBuf;
 
@@ -22,7 +22,7 @@ pub(crate) struct Args {
     /// Technique, by name or as a TOML file, or "list" for all names
     #[arg(long, value_name = "NAME|FILE.toml|list")]
     fit: String,
-    /// Width and height of the maps, in texels [default: what the technique says, 2048 for the names]
+    /// Width and height of the maps, in texels [default: the technique's own, 2048 for named ones]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(16..=65536))]
     resolution: Option<u32>,
     #[command(flatten)]
@@ -34,7 +34,7 @@ pub(crate) struct Args {
     out: Option<PathBuf>,
 }
 
-/// The presets and the names with inputs, a paragraph each.
+/// Returns the presets and the names with inputs, with a paragraph for each.
 fn list() -> String {
     let preset = |preset: &Preset| format!("{:15} {}\n{:15} {}\n", preset.name, preset.summary, "", preset.advice);
     let named = |named: &NamedInputs| format!("{:15} {}, {}\n", named.name, named.preset, named.inputs);
@@ -51,7 +51,7 @@ pub(crate) fn run(args: &Args) -> Result<()> {
         named = named.with_resolution(texels);
     }
     named.inputs = args.inputs.changed(named.inputs);
-    // The measures of fits are of points: no filter reads beside them.
+    // Fits are measured at points, so no border is needed for a filter.
     let technique = &mut named.technique;
     technique.fit.border = Some(0.0);
     let scenarios = args.scenarios.as_ref().context("give the file of scenarios")?;
@@ -71,7 +71,7 @@ pub(crate) fn run(args: &Args) -> Result<()> {
     let [median, slowest, first] = [times.median, times.slowest, times.first].map(|nanoseconds| nanoseconds * 1e-3);
     print(format_args!(
         "{}: {} frames, {median:.1} µs for the median frame, {slowest:.1} µs for the slowest, {first:.1} µs for the \
-         slowest one that begins a path\n",
+         slowest first frame of a path\n",
         out.display(),
         file.frames.len(),
     ))

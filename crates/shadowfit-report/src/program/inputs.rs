@@ -1,21 +1,21 @@
-//! The options of a command line for what fits are given.
+//! Command-line options for the inputs of fits.
 
 use shadowfit_params::tool::Settings;
 use shadowfit_params::{BoxSource, Inputs, ParameterError, set_from_str};
 
-/// What fits are given, where it is not what the technique's name says.
+/// Inputs of fits, where they differ from the defaults of the technique's name.
 #[derive(Clone, Debug, clap::Args)]
 pub(crate) struct InputArgs {
-    /// Which boxes of the scene fits are given: clusters (of triangles) or objects [default: clusters]
+    /// Boxes of the scene that fits get: clusters (of triangles) or objects [default: clusters]
     #[arg(long, value_name = "clusters|objects", value_parser = boxes)]
     boxes: Option<BoxSource>,
-    /// Do not tell fits what the frame before showed
+    /// Fit without the visible demand of the previous frame
     #[arg(long)]
     unseen: bool,
 }
 
 impl InputArgs {
-    /// The inputs of a technique with what is asked for changed.
+    /// Returns a technique's inputs with the requested changes.
     pub(crate) fn changed(&self, inputs: Inputs) -> Inputs {
         Inputs { boxes: self.boxes.unwrap_or(inputs.boxes), visible_demand: inputs.visible_demand && !self.unseen }
     }

@@ -1,6 +1,6 @@
-//! Ctrl-C: the first one asks a run to write what it has, a second one ends it at once.
+//! Ctrl-C: the first press ends a run early with a report, a second one ends it at once.
 //!
-//! A run over a long path takes minutes, and the frames that are measured by then are worth keeping.
+//! A run over a long path takes minutes, and its finished frames are worth keeping.
 
 use std::process;
 use std::sync::Arc;
@@ -9,16 +9,16 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use anyhow::{Context, Result};
 use shadowfit_study::tell;
 
-/// Exit code of a program that Ctrl-C ended: 128 and the number of the signal, as shells count.
+/// Exit code after Ctrl-C: 128 and the number of the signal, by the convention of shells.
 pub(crate) const INTERRUPTED: u8 = 130;
 
-/// Whether somebody pressed Ctrl-C.
+/// Flag that Ctrl-C was pressed.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Interrupt {
     pressed: Arc<AtomicU32>,
 }
 
-/// What a press of Ctrl-C does.
+/// The effect of a press of Ctrl-C.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Answer {
     FinishFrame,
@@ -26,11 +26,11 @@ enum Answer {
 }
 
 impl Interrupt {
-    /// Takes over Ctrl-C for the rest of the program.
+    /// Installs the handler of Ctrl-C for the rest of the program.
     ///
     /// # Errors
     ///
-    /// When something else in the program already has.
+    /// If another handler is already installed.
     pub(crate) fn install() -> Result<Self> {
         let interrupt = Self::default();
         let own = interrupt.clone();
@@ -38,11 +38,11 @@ impl Interrupt {
             Answer::FinishFrame => tell("stopping after this frame; Ctrl-C again ends at once, without a report"),
             Answer::EndNow => process::exit(i32::from(INTERRUPTED)),
         })
-        .context("Ctrl-C cannot be watched for")?;
+        .context("cannot install a handler for Ctrl-C")?;
         Ok(interrupt)
     }
 
-    /// Whether to stop after this frame.
+    /// Returns whether to stop after this frame.
     pub(crate) fn is_requested(&self) -> bool {
         self.pressed.load(Ordering::Relaxed) > 0
     }

@@ -1,4 +1,4 @@
-//! What is looked at: a scene, a path through it, and a light.
+//! The subject of a report: a scene, a path through it, and a light.
 
 use std::path::PathBuf;
 
@@ -6,7 +6,7 @@ use anyhow::{Context, Result, bail, ensure};
 use glam::Vec3;
 use shadowfit::Aabb;
 use shadowfit_params::tool::LightSettings;
-use shadowfit_scene::builtin::default_scene;
+use shadowfit_scene::builtin::BuiltinScene;
 use shadowfit_scene::{BlendedCasters, Scene, load_gltf};
 use shadowfit_study::{Comparison, Judging, View, tell};
 use shadowfit_truth::Tracer;
@@ -14,24 +14,23 @@ use shadowfit_truth::Tracer;
 use crate::drawing::{Drawing, positive};
 use crate::path::{CameraPath, find, follow};
 
-/// Name of the scene that is drawn without a file.
-const BUILT_IN: &str = "courtyard";
 /// Bytes of a GiB.
 const GIB: f64 = (1u64 << 30) as f64;
-/// Share of a scene's size from which on the offset of shadow rays is coarse.
+/// Ratio of ray offset to scene size above which the offset counts as coarse.
 const COARSE_OFFSET: f64 = 5e-4;
-/// Share by which an offset that follows from the scene's size may differ from that share.
+/// Relative rounding error of an offset that is computed from the scene's size.
 const ROUNDING: f64 = 1e-6;
-/// Bytes of a vertex in the scene and, where the adapter is the CPU, on the GPU: 48 and 64.
+/// Bytes per vertex: 48 in the scene, and 64 on the GPU if the adapter is the CPU.
 const BYTES_A_VERTEX: u64 = 112;
-/// Bytes of a triangle in its indices, here and twice on the GPU, and in what the software adapter keeps of a pass.
+/// Bytes per triangle: its indices, here and twice on the GPU, and the data that the software adapter keeps
+/// for a pass.
 const BYTES_A_TRIANGLE: u64 = 140;
-/// Number of triangles from which on the memory that they take is printed.
+/// Least number of triangles whose memory is printed.
 const MANY_TRIANGLES: usize = 1_000_000;
 
 #[derive(Clone, Debug, clap::Args)]
 pub(crate) struct Job {
-    /// glTF file, or "courtyard" for the built-in scene
+    /// glTF file, or the name of a built-in scene: courtyard, plain, arcade, forest or town
     scene: PathBuf,
     /// Camera path, TOML or JSON [default: an orbit and a flight that are found in the scene]
     #[arg(long, value_name = "FILE")]
@@ -39,17 +38,17 @@ pub(crate) struct Job {
     /// Follow a camera of the file instead of a path, by its number from 1; with --play through its animation
     #[arg(long, value_name = "N", conflicts_with = "path")]
     camera: Option<u32>,
-    /// Direction toward the sun: azimuth from +z toward +x and elevation, in degrees [default: the path's, else the
-    /// scene's, which its animation may move]
+    /// Direction toward the sun: azimuth from +z toward +x and elevation, in degrees [default: the path's,
+    /// else the scene's, which its animation may move]
     #[arg(long, value_name = "AZIMUTH,ELEVATION", value_parser = light, allow_hyphen_values = true)]
     light: Option<LightSettings>,
-    /// Take a directional light of the file for the sun, by its number from 1 [default: the strongest]
+    /// Use a directional light of the file as the sun, by its number from 1 [default: the strongest]
     #[arg(long, value_name = "N", conflicts_with = "light")]
     sun: Option<u32>,
-    /// Play the scene's first animation, so many frames of the path a second
+    /// Play the scene's first animation at this number of path frames per second
     #[arg(long, value_name = "FPS")]
     play: Option<f32>,
-    /// Let blended surfaces cast nothing, instead of casting where their alpha is at least 0.5
+    /// Exclude blended surfaces from the casters, instead of casting where their alpha is at least 0.5
     #[arg(long)]
     no_blended_casters: bool,
     /// Refuse scenes that need more memory than this, in GiB
@@ -62,9 +61,9 @@ pub(crate) struct Job {
 /// A frame of the path.
 #[derive(Clone, Debug)]
 pub(crate) struct JobFrame {
-    /// Such as `orbit/3`.
+    /// Name, such as `orbit/3`.
     pub(crate) name: String,
-    /// Such as `orbit`.
+    /// Group, such as `orbit`.
     pub(crate) group: String,
     pub(crate) view: View,
     /// Time of the animation, in seconds, if it plays.
@@ -74,29 +73,29 @@ pub(crate) struct JobFrame {
 /// The sun of a scene.
 #[derive(Clone, Copy, Debug)]
 enum Sunlight {
-    /// The directional light of an index, which animations may move.
+    /// Index of a directional light of the file, which animations may move.
     OfFile(usize),
-    /// One with this direction of travel.
+    /// Fixed direction of travel.
     Still(Vec3),
 }
 
-/// A job that can begin.
+/// A job, ready to run.
 pub(crate) struct Prepared {
     pub(crate) comparison: Comparison,
     pub(crate) judging: Judging,
-    /// In the coordinates of the scene's file, as it is written.
+    /// Path in the coordinates of the scene's file, for writing.
     pub(crate) path: CameraPath,
     pub(crate) light: LightSettings,
     pub(crate) frames: Vec<JobFrame>,
-    /// What a reader should know of the measurement, in whole sentences.
+    /// Remarks on the measurement, in whole sentences.
     pub(crate) notes: Vec<String>,
-    /// What import skipped, replaced or repaired.
+    /// Parts of the scene that import skipped, replaced or repaired.
     pub(crate) scene_notes: Vec<String>,
 }
 
 impl Job {
-    /// Loads the scene, opens the GPU, and finds the frames. What import noted of the scene goes to the standard error
-    /// too.
+    /// Loads the scene, opens the GPU, and finds the frames. Prints the notes of the import to standard
+    /// error.
     pub(crate) fn prepare(&self) -> Result<Prepared> {
         let scene = self.load()?;
         scene.warnings(&self.scene).for_each(tell);
@@ -111,7 +110,7 @@ impl Job {
         }
         let judging = comparison.judging;
         let aspect = judging.size[0] as f32 / judging.size[1] as f32;
-        // Files of paths have the coordinates of the scene's file.
+        // Path files use the coordinates of the scene's file.
         let file_origin = comparison.scene().scene().origin;
         let path = self.path(&comparison, aspect, &mut notes)?;
         let fixed = if self.sun.is_some() { None } else { self.light.or(path.light) };
@@ -137,11 +136,11 @@ impl Job {
         let name = self.scene.display();
         ensure!(self.play.is_none() || animates, "--play: {name} has no animation; leave the option out");
         let is_rate = self.play.is_none_or(|fps| fps.is_finite() && fps > 0.0);
-        ensure!(is_rate, "--play: give a number of frames a second above 0");
+        ensure!(is_rate, "--play: give a number of frames per second above 0");
         Ok(())
     }
 
-    /// Returns the path in the coordinates of the loaded scene. Adds what a search for one notes.
+    /// Returns the path in the coordinates of the loaded scene. Adds the notes of the path search.
     fn path(&self, comparison: &Comparison, aspect: f32, notes: &mut Vec<String>) -> Result<CameraPath> {
         let scene = comparison.scene();
         if let Some(file) = &self.path {
@@ -170,14 +169,14 @@ impl Job {
         Ok(Some(Sunlight::OfFile(index)))
     }
 
-    /// The scene's name in reports.
+    /// Returns the scene's name for reports.
     pub(crate) fn title(&self) -> String {
         self.scene.file_stem().unwrap_or_default().to_string_lossy().into_owned()
     }
 
     fn load(&self) -> Result<Scene> {
-        if self.scene.as_os_str() == BUILT_IN && !self.scene.exists() {
-            return Ok(default_scene());
+        if let Some(scene) = self.scene.to_str().and_then(BuiltinScene::from_id).filter(|_| !self.scene.exists()) {
+            return Ok(scene.build());
         }
         let mut scene = load_gltf(&self.scene)?;
         if self.no_blended_casters {
@@ -186,7 +185,7 @@ impl Job {
         Ok(scene)
     }
 
-    /// Says what a large scene will take before it takes it, and refuses one that would take too much.
+    /// Prints the memory that a large scene will need before it is allocated. Fails if it exceeds the limit.
     fn check_memory(&self, scene: &Scene) -> Result<()> {
         let primitive =
             |instance: &shadowfit_scene::Instance| &scene.meshes[instance.mesh].primitives[instance.primitive];
@@ -208,7 +207,8 @@ impl Job {
         Ok(())
     }
 
-    /// The frames of a path, with the light at a time of the animation, in seconds; the default light where there is none.
+    /// Returns the frames of a path. `light` returns the light at a time of the animation, in seconds; if it
+    /// returns `None`, the frame gets the default light.
     fn frames(&self, path: &CameraPath, light: impl Fn(Option<f32>) -> Option<LightSettings>) -> Vec<JobFrame> {
         let seconds = |index: usize| self.play.map(|fps| index as f32 / fps);
         let names = path.names();
@@ -226,22 +226,22 @@ impl Job {
     }
 }
 
-/// Says when shadow rays do not start a millimetre over the surfaces, and when they start so far over them that they pass
-/// over what lies close together.
+/// Returns a note if shadow rays do not start 1 mm above the surfaces, or if they start so far above them
+/// that they miss occluders close to the surface.
 fn ray_offset_note(size: Vec3, offset: f64) -> Option<String> {
     let size = f64::from(size.length());
     let (millimetres, usual) = (offset * 1e3, Judging::default().ray_offset);
     if offset > size * COARSE_OFFSET * (1.0 + ROUNDING) {
         return Some(format!(
-            "Shadow rays start {millimetres} mm over the surfaces, which is much for a scene {size:.2} m across: where \
-             surfaces lie closer together, truth takes them for lit and the map for shadowed (false shadow). Without \
-             --units-per-metre the distance follows from the scene's size."
+            "Shadow rays start {millimetres} mm above the surfaces, which is a lot for a scene {size:.2} m across: if \
+             surfaces are closer together, truth counts them as lit and the map as shadowed (false shadow). Without \
+             --units-per-metre the distance is computed from the scene's size."
         ));
     }
     (offset != usual).then(|| {
         format!(
-            "Shadow rays start {millimetres:.4} mm over the surfaces of this scene, which is {size:.3} m across. \
-             --units-per-metre N starts them N mm over the surfaces."
+            "Shadow rays start {millimetres:.4} mm above the surfaces of this scene, which is {size:.3} m across. \
+             --units-per-metre N starts them N mm above the surfaces."
         )
     })
 }
@@ -250,7 +250,7 @@ fn light(text: &str) -> Result<LightSettings> {
     let (azimuth, elevation) =
         text.split_once(',').with_context(|| format!("\"{text}\" is not AZIMUTH,ELEVATION, such as 37,45"))?;
     let degrees = |text: &str| -> Result<f32> {
-        let degrees: f32 = text.trim().parse().with_context(|| format!("\"{text}\" is no number of degrees"))?;
+        let degrees: f32 = text.trim().parse().with_context(|| format!("\"{text}\" is not a number of degrees"))?;
         ensure!(degrees.is_finite(), "{degrees} is not finite");
         Ok(degrees.to_radians())
     };

@@ -1,4 +1,4 @@
-//! `report live`: pixels judged on the GPU, compared with those judged on the CPU, and how long that takes.
+//! `report live`: compares pixels judged on the GPU with pixels judged on the CPU, and measures the time.
 
 use anyhow::{Result, bail};
 use shadowfit_study::{Agreement, LiveTruth, NamedTechnique, SharedTruth, print};
@@ -6,9 +6,9 @@ use shadowfit_study::{Agreement, LiveTruth, NamedTechnique, SharedTruth, print};
 use crate::interrupt::Interrupt;
 use crate::job::Job;
 
-/// Pictures that are judged while the time is measured, after as many to warm up.
+/// Number of timed pictures, after the same number for warm-up.
 const REPEATS: u32 = 50;
-/// Shares of pixels of the same class that the two promise: off edges, and of all that face the light.
+/// Guaranteed shares of pixels of equal class: off edges, and of all pixels that face the light.
 const PROMISED: [f64; 2] = [0.999, 0.995];
 
 #[derive(clap::Args)]
@@ -20,7 +20,7 @@ pub(crate) struct Args {
     technique: String,
 }
 
-/// Compares all frames and times each, and fails when they agree less than promised.
+/// Compares and times all frames. Fails if they agree less than guaranteed.
 pub(crate) fn run(args: &Args, interrupt: &Interrupt) -> Result<()> {
     let mut job = args.job.prepare()?;
     job.comparison.add(args.job.drawing.changed(NamedTechnique::find(&args.technique)?)?)?;
@@ -57,7 +57,7 @@ pub(crate) fn run(args: &Args, interrupt: &Interrupt) -> Result<()> {
     say(&sum)
 }
 
-/// Prints how far the judges agree, and fails if they agree less than promised.
+/// Prints the agreement of the two judges. Fails if it is less than guaranteed.
 fn say(agreement: &Agreement) -> Result<()> {
     let [off_edges, all] = [agreement.off_edges(), agreement.all()];
     print(format_args!(

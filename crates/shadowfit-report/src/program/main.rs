@@ -1,4 +1,4 @@
-//! Reports: how wrong the shadows of techniques are, measured against ray-traced truth.
+//! Reports: the errors of techniques' shadows, measured against ray-traced truth.
 //!
 //! ```sh
 //! # Techniques over an orbit and a flight through a scene: tables, plots, pictures, and a page that shows them.
@@ -23,6 +23,7 @@ use clap::{CommandFactory, Parser, Subcommand};
 
 mod culling;
 mod drawing;
+mod figures;
 mod fit;
 mod inputs;
 mod interrupt;
@@ -35,14 +36,14 @@ mod tune;
 
 use interrupt::{INTERRUPTED, Interrupt};
 
-/// What bad input ends with, as clap's own complaints do.
+/// Exit code after bad input. It is also clap's exit code.
 const BAD_INPUT: u8 = 2;
 
 #[derive(Parser)]
 #[command(
     about = "Measures how wrong shadows are, against ray-traced truth",
-    after_help = "Exit codes: 0; 2 after bad input, or where a file cannot be written; 130 after Ctrl-C, when what was \
-                  finished has been written."
+    after_help = "Exit codes: 0; 2 after bad input, or if a file cannot be written; 130 after Ctrl-C, when all \
+                  finished parts have been written."
 )]
 struct Cli {
     #[command(subcommand)]
@@ -51,8 +52,10 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Compare techniques over a camera path; what is meant when no command is named
+    /// Compare techniques over a camera path; the default command
     Scene(Box<scene::Args>),
+    /// Reproduce the figures of README and BENCHMARKS on generated scenes
+    Figures(Box<figures::Args>),
     /// Measure fit files on the frames of a file of scenarios
     Peers(Box<peers::Args>),
     /// Search the technique with the least error
@@ -61,11 +64,11 @@ enum Command {
     Live(Box<live::Args>),
     /// Fit maps to the frames of a file of scenarios, as a fit file for `peers`
     Fit(Box<fit::Args>),
-    /// Count the casters and triangles that culling leaves of each shadow pass
+    /// Count the casters and triangles of each shadow pass after culling
     Culling(Box<culling::Args>),
 }
 
-/// The arguments, with the command that is meant when none is named.
+/// Returns the arguments, with the default command if none is named.
 fn arguments(given: impl IntoIterator<Item = OsString>) -> Vec<OsString> {
     let mut arguments: Vec<OsString> = given.into_iter().collect();
     let command = Cli::command();
@@ -91,13 +94,14 @@ fn main() -> ExitCode {
     }
 }
 
-/// Whether all was done, Ctrl-C aside.
+/// Runs the command. Returns false if Ctrl-C stopped it early.
 fn run(cli: Cli) -> Result<bool> {
     match cli.command {
         // Ctrl-C ends these at once: they write nothing before they are finished.
         Command::Fit(args) => fit::run(&args).map(|()| true),
         Command::Culling(args) => culling::run(&args).map(|()| true),
         Command::Scene(args) => scene::run(&args, &Interrupt::install()?),
+        Command::Figures(args) => figures::run(&args, &Interrupt::install()?),
         Command::Peers(args) => interruptible(|interrupt| peers::run(&args, interrupt)),
         Command::Tune(args) => interruptible(|interrupt| tune::run(&args, interrupt)),
         Command::Live(args) => interruptible(|interrupt| live::run(&args, interrupt)),
@@ -109,4 +113,28 @@ fn interruptible(command: impl FnOnce(&Interrupt) -> Result<()>) -> Result<bool>
     let interrupt = Interrupt::install()?;
     command(&interrupt)?;
     Ok(!interrupt.is_requested())
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use shadowfit_testing::commands::doc_commands;
+
+    use super::*;
+
+    #[test]
+    fn every_command_of_the_docs_has_options_that_exist() {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+        let mut count = 0;
+        for command in doc_commands(&root) {
+            let Some(words) = command.program_arguments("shadowfit-report") else { continue };
+            // The help ends parsing after all other arguments, whether required ones are there or not.
+            let words = ["shadowfit-report".to_owned()].into_iter().chain(words).chain(["--help".to_owned()]);
+            let error = Cli::try_parse_from(arguments(words.map(OsString::from))).err().expect("help");
+            assert_eq!(error.kind(), clap::error::ErrorKind::DisplayHelp, "{}: {error}", command.page);
+            count += 1;
+        }
+        assert!(count >= 8, "{count}");
+    }
 }

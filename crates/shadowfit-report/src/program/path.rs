@@ -1,7 +1,7 @@
-//! Camera paths: the frames that techniques are compared on.
+//! Camera paths: the frames on which techniques are compared.
 //!
-//! A path comes from a file ([`file`]), or is found in the scene itself ([`find`]) so that a report
-//! needs no preparation; a found one can be written, edited and read again.
+//! A path is read from a file ([`file`]) or found in the scene ([`find`]), so that a report needs no
+//! preparation. A found path can be written, edited and read again.
 
 mod file;
 mod find;
@@ -18,21 +18,21 @@ use shadowfit_params::tool::LightSettings;
 pub(crate) use find::find;
 pub(crate) use follow::follow;
 
-/// Cameras in the order in which they are rendered.
+/// Cameras in rendering order.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct CameraPath {
-    /// At least one.
+    /// Frames, at least one.
     pub(crate) frames: Vec<PathFrame>,
-    /// The sun, where the path asks for one.
+    /// The sun, if the path defines one.
     pub(crate) light: Option<LightSettings>,
 }
 
 /// A camera, and the part of the path that it belongs to.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct PathFrame {
-    /// Right-handed world, y up unless the path says otherwise, metres.
+    /// Camera. World space is right-handed, in metres, y up unless the path defines another direction.
     pub(crate) camera: Camera,
-    /// Such as `orbit`; frames of a group follow each other, and the camera jumps between groups.
+    /// Group, such as `orbit`. The frames of a group are consecutive, and the camera jumps between groups.
     pub(crate) group: String,
 }
 
@@ -43,7 +43,7 @@ impl CameraPath {
         self
     }
 
-    /// Names of the frames: the group and the place in it, such as `orbit/3`.
+    /// Returns the names of the frames: the group and the index in it, such as `orbit/3`.
     pub(crate) fn names(&self) -> Vec<String> {
         let mut place = 0;
         let mut names = Vec::with_capacity(self.frames.len());

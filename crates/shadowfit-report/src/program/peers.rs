@@ -1,5 +1,5 @@
-//! `report peers`: the measures of fit files and of the pictures that they give, as a table for people and one for
-//! programs.
+//! `report peers`: measures fit files and the pictures drawn with their maps, and writes a table as Markdown
+//! and as JSON.
 
 use std::path::PathBuf;
 
@@ -24,18 +24,18 @@ use crate::interrupt::Interrupt;
 pub(crate) struct Args {
     /// Scenes, cameras and lights
     scenarios: PathBuf,
-    /// Maps that a fit made for each frame
+    /// Maps that a fit computed for each frame
     #[arg(required = true)]
     fits: Vec<PathBuf>,
     #[command(flatten)]
     geometry: Source,
-    /// Take every Nth ray across and down for the figures of the fits: a quick look, they are approximate
+    /// Trace every Nth ray across and down for the figures of the fits: faster and approximate
     #[arg(long, default_value_t = 1, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=180))]
     stride: u32,
-    /// Measure the fits alone, without drawing
+    /// Measure only the fits, without drawing
     #[arg(long)]
     no_render: bool,
-    /// Draw every Nth frame of each path: a quick look, the figures of the pictures are approximate
+    /// Draw every Nth frame of each path: faster; the figures of the pictures are approximate
     #[arg(long, default_value_t = 1, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     every: u32,
     #[command(flatten)]
@@ -48,7 +48,7 @@ pub(crate) struct Args {
 /// Measures, writes both tables, and prints the rows over all frames.
 pub(crate) fn run(args: &Args, interrupt: &Interrupt) -> Result<()> {
     let mut ranking = Ranking::new(Scenarios::read(&args.scenarios)?);
-    // Measuring takes minutes: a scene whose triangles were not given is refused before that.
+    // Measuring takes minutes, so fail first if a scene's triangles were not given.
     for scene in &ranking.scenarios().scenes {
         args.geometry.file(scene)?;
     }
@@ -64,7 +64,7 @@ pub(crate) fn run(args: &Args, interrupt: &Interrupt) -> Result<()> {
     print(overall_markdown(&tables))
 }
 
-/// Measures scene after scene; both tables are written after each, so that finished scenes can be read.
+/// Measures all scenes. Both tables are written after each scene, so that finished scenes can be read.
 fn measure(
     ranking: &mut Ranking,
     args: &Args,
@@ -78,7 +78,8 @@ fn measure(
     for (index, scene) in scenarios.scenes.iter().enumerate() {
         progress.set_message(scene.name.clone());
         let objects = args.geometry.read(scene)?;
-        // A scene that cannot be read leaves no folder, and one that cannot be made is told before anything is measured.
+        // Create the folder after reading the scene, so that an unreadable scene leaves no folder, and before
+        // measuring.
         make_folder(&args.out)?;
         let tracer = Tracer::new(objects.iter().flatten().copied());
         ranking.measure_scene(index, &tracer, args.stride, &|| progress.inc(1));
@@ -96,7 +97,7 @@ fn measure(
     Ok(())
 }
 
-/// What draws all fits.
+/// The renderer state for all fits.
 struct Pictures {
     gpu: Gpu,
     every: u32,
@@ -105,7 +106,7 @@ struct Pictures {
     fits: Vec<Drawn>,
 }
 
-/// What draws one fit.
+/// The renderer state for one fit.
 struct Drawn {
     name: String,
     evaluator: Evaluator,
@@ -132,7 +133,7 @@ impl Pictures {
         Ok(Self { gpu, every: args.every, bias, format: args.drawing.format(), fits })
     }
 
-    /// Whether a frame is drawn. Those of quick looks are not neighbours, so that they have no crawl.
+    /// Returns whether a frame is drawn. With a step above 1, frames are not neighbours and have no crawl.
     fn takes(&self, frame: &Frame) -> bool {
         frame.frame.is_multiple_of(self.every)
     }
@@ -179,7 +180,7 @@ fn evaluator(gpu: &Gpu, descriptor: &ShadowMapDescriptor, judging: Judging) -> R
     Ok(Evaluator::new(Renderer::new(gpu, descriptor, 1)?, judging))
 }
 
-/// The shadow map that holds all maps of a file.
+/// Returns the descriptor of a shadow map with room for all maps of a file.
 fn descriptor(
     scenarios: &Scenarios,
     file: &FitFile,
@@ -211,8 +212,8 @@ fn descriptor(
     })
 }
 
-/// How the maps of a file are read: by coverage if no map ends, which files of maps other than cascades say; else by view
-/// depth.
+/// Returns how the maps of a file are selected: by coverage if no map has an end (fit files of maps other
+/// than cascades say so), else by view depth.
 fn choice(maps: &[Vec<FitMap>]) -> MapSelection {
     let has_no_end = |map: &FitMap| map.split_far >= FitMap::NO_END;
     if maps.iter().flatten().all(has_no_end) {
@@ -222,13 +223,13 @@ fn choice(maps: &[Vec<FitMap>]) -> MapSelection {
     }
 }
 
-/// The camera and light of a frame, for the study's pictures.
+/// Returns the camera and light of a frame, for the study's pictures.
 pub(crate) fn view(frame: &Frame, is_first: bool) -> View {
     let direction = DVec3::from_array(frame.light_dir).as_vec3();
     View { camera: frame.camera().into(), direction, is_first }
 }
 
-fn map_fits(maps: &[FitMap], view: &View, bias: &BiasSettings, format: MapFormat) -> Result<Vec<FittedMap>> {
+pub(crate) fn map_fits(maps: &[FitMap], view: &View, bias: &BiasSettings, format: MapFormat) -> Result<Vec<FittedMap>> {
     let depths = |map: &FitMap| {
         let is_last = map.split_far >= f64::from(view.camera.far);
         DepthRange::new(map.split_near, (!is_last).then_some(map.split_far))
@@ -245,7 +246,7 @@ fn light_fit(map: &FitMap, view: &View) -> Result<LightProjection> {
     let resolution = UVec2::new(size.x as u32, size.y as u32);
     ensure!(size.max_element() <= 8192.0, "a map of {} by {} texels is too large to be drawn", size.x, size.y);
     let matrix = map.clip_from_world();
-    // Files say nothing of the depth convention: where depth falls along the light it is reversed.
+    // Files do not store the depth convention. If depth decreases along the light, it is reversed.
     let is_reversed = matrix.row(2).truncate().dot(view.direction.as_dvec3()) < 0.0;
     let depth = if is_reversed { DepthConvention::Reversed } else { DepthConvention::ZeroToOne };
     Ok(LightProjection::from_clip_from_world(&matrix, depth, view.direction, resolution, view.camera.eye)?)

@@ -1,4 +1,5 @@
-//! `report SCENE`: techniques over a camera path through a scene, as tables, plots, pictures and a page.
+//! `report SCENE`: compares techniques over a camera path through a scene, as tables, plots, pictures and a
+//! page.
 
 use std::path::{Path, PathBuf};
 
@@ -18,15 +19,15 @@ use crate::drawing::{Drawing, named_filter};
 use crate::interrupt::Interrupt;
 use crate::job::{Job, JobFrame, Prepared};
 
-/// Techniques that are compared when none is named: the sample's, this project's own stable and sharp cascades, and the
-/// recommended one.
+/// Techniques that are compared by default: the XNA sample's, this project's stable and sharp cascades, and
+/// the recommended one.
 const DEFAULT_TECHNIQUES: [&str; 4] = ["xna-1", "stable-4", "histogram-4", Preset::RECOMMENDED];
 
 #[derive(clap::Args)]
 pub(crate) struct Args {
     #[command(flatten)]
     job: Job,
-    /// Technique, by name or as a TOML file; give it once for each [default: xna-1, stable-4, histogram-4, windows-4]
+    /// Technique, by name or as a TOML file; repeatable [default: xna-1, stable-4, histogram-4, windows-4]
     #[arg(long = "technique", alias = "config", value_name = "NAME|FILE.toml")]
     techniques: Vec<String>,
     #[arg(
@@ -38,13 +39,14 @@ pub(crate) struct Args {
         help = "Compare filters: every technique once with each of them, and with the bias that it needs"
     )]
     filters: Vec<(String, FilterKind)>,
-    /// Measure every Nth frame of the path: a quick look, in which what maps keep from frame to frame counts for less
+    /// Measure every Nth frame of the path: faster, but underestimates the benefit of maps held from frame to
+    /// frame
     #[arg(long, default_value_t = 1, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     every: u32,
-    /// Width and height of all maps, in texels [default: what the techniques say]
+    /// Width and height of all maps, in texels [default: the techniques' own]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(256..=8192))]
     resolution: Option<u32>,
-    /// Frame that is drawn with every technique, such as `path/3`; give it once for each [default: the worst, a middling
+    /// Frame that is drawn with every technique, such as `path/3`; repeatable [default: the worst, a middling
     /// and the best one]
     #[arg(long = "picture", value_name = "FRAME")]
     pictures: Vec<String>,
@@ -53,14 +55,14 @@ pub(crate) struct Args {
     out: PathBuf,
 }
 
-/// What was measured of one technique so far.
+/// The measurements of one technique so far.
 #[derive(Default)]
 struct Measured {
     tallies: Vec<PictureTally>,
     maps: Vec<Vec<FittedMap>>,
 }
 
-/// Measures, writes the report, and says where it is. Whether all frames were measured.
+/// Measures and writes the report, and prints its folder. Returns whether all frames were measured.
 pub(crate) fn run(args: &Args, interrupt: &Interrupt) -> Result<bool> {
     let techniques = techniques(args)?;
     let mut job = args.job.prepare()?;
@@ -69,9 +71,9 @@ pub(crate) fn run(args: &Args, interrupt: &Interrupt) -> Result<bool> {
         job.comparison.add(technique.clone())?;
     }
     let asked = frames_named(&args.pictures, &job.frames)?;
-    // A path that cannot be written would leave hours of measurements without a report.
+    // Fail before measuring if the path cannot be written: otherwise hours of measurements would be lost.
     let path = job.path.to_text(Path::new(PATH))?;
-    // Nothing is written before all input has been read.
+    // Write nothing before all input has been read.
     let output = Output::create(&args.out, FileWriter { make_folder, write: write_whole })?;
     let mut measured: Vec<Measured> = techniques.iter().map(|_| Measured::default()).collect();
     let progress = ProgressBar::new(job.frames.len() as u64);
@@ -87,15 +89,15 @@ pub(crate) fn run(args: &Args, interrupt: &Interrupt) -> Result<bool> {
     progress.finish_and_clear();
     check(&techniques, &measured, interrupt)?;
     let mut run = report(args, &job, &techniques, &measured);
-    // The tables first: pictures take a while, and may fail for want of room.
-    output.write_report(&run, &path)?;
+    // Write the tables first: pictures take a while, and the disk may be full.
+    output.write_report(&run, Some(&path))?;
     let drawn = if asked.is_empty() {
         telling(&run, 0..run.frames.len()).into_iter().map(|(frame, _)| frame).collect()
     } else {
         asked
     };
     draw_pictures(&mut job, &measured, &output, &mut run, &drawn)?;
-    output.write_report(&run, &path)?;
+    output.write_report(&run, Some(&path))?;
     let folder = args.out.display();
     let tables = to_markdown(&run);
     print(format_args!("{tables}\n{folder}: index.html, report.md, report.json, pictures and plots\n"))?;
@@ -123,7 +125,7 @@ fn techniques(args: &Args) -> Result<Vec<NamedTechnique>> {
     Ok(techniques)
 }
 
-/// Every `step`-th frame of each group, from its first.
+/// Returns every `step`-th frame of each group, from its first frame.
 fn every(frames: &[JobFrame], step: u32) -> Vec<JobFrame> {
     let mut place = 0_u32;
     let is_taken = |frame: &&JobFrame| {
@@ -133,7 +135,8 @@ fn every(frames: &[JobFrame], step: u32) -> Vec<JobFrame> {
     frames.iter().filter(is_taken).cloned().collect()
 }
 
-/// A technique with each of some filters, named after them too; as it is where there are none.
+/// Returns the technique with each of the filters, whose names are appended to its name, or unchanged if
+/// there are none.
 fn with_filters(
     named: &NamedTechnique,
     filters: &[(String, FilterKind)],
@@ -150,7 +153,7 @@ fn with_filters(
     filters.iter().map(with_filter).collect()
 }
 
-/// Refuses to report on pictures in which nothing is judged. One that was interrupted may have none.
+/// Returns an error if no pixel was judged. An interrupted run may have no pictures.
 fn check(techniques: &[NamedTechnique], measured: &[Measured], interrupt: &Interrupt) -> Result<()> {
     for (technique, measured) in techniques.iter().zip(measured) {
         if !(interrupt.is_requested() && measured.tallies.is_empty()) {
@@ -177,7 +180,7 @@ fn measure(job: &mut Prepared, index: usize, measured: &mut [Measured]) -> Resul
     Ok(())
 }
 
-/// Everything but the pictures.
+/// Returns the run without its pictures.
 fn report(args: &Args, job: &Prepared, techniques: &[NamedTechnique], measured: &[Measured]) -> Run {
     let done = measured.first().map_or(0, |measured| measured.tallies.len());
     let frames = &job.frames[..done];
@@ -212,7 +215,7 @@ fn report(args: &Args, job: &Prepared, techniques: &[NamedTechnique], measured: 
     }
 }
 
-/// Names of the groups, in order.
+/// Returns the names of the groups, in order.
 fn groups(frames: &[JobFrame]) -> Vec<String> {
     let mut groups: Vec<String> = Vec::new();
     for frame in frames {
@@ -223,7 +226,7 @@ fn groups(frames: &[JobFrame]) -> Vec<String> {
     groups
 }
 
-fn pool<'a>(tallies: impl IntoIterator<Item = &'a PictureTally>) -> PictureTally {
+pub(crate) fn pool<'a>(tallies: impl IntoIterator<Item = &'a PictureTally>) -> PictureTally {
     let mut pool = PictureTally::default();
     for tally in tallies {
         pool.merge(tally);
@@ -231,11 +234,11 @@ fn pool<'a>(tallies: impl IntoIterator<Item = &'a PictureTally>) -> PictureTally
     pool
 }
 
-fn columns<'a>(tallies: impl IntoIterator<Item = &'a PictureTally>) -> Columns {
+pub(crate) fn columns<'a>(tallies: impl IntoIterator<Item = &'a PictureTally>) -> Columns {
     pool(tallies).columns().into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
 }
 
-/// Draws some frames with every technique, from the maps that they had then.
+/// Draws some frames with every technique, from the maps of the measurement.
 fn draw_pictures(
     job: &mut Prepared,
     measured: &[Measured],
@@ -243,7 +246,7 @@ fn draw_pictures(
     run: &mut Run,
     frames: &[usize],
 ) -> Result<()> {
-    // A run that was interrupted may not have come as far.
+    // An interrupted run may have fewer frames.
     for &index in frames.iter().filter(|index| **index < run.frames.len()) {
         pose(job, index);
         let frame = job.frames[index].clone();
@@ -267,7 +270,7 @@ fn draw_pictures(
     Ok(())
 }
 
-/// The places of frames in the path, by their names.
+/// Returns the indices of frames in the path, by their names.
 fn frames_named(names: &[String], frames: &[JobFrame]) -> Result<Vec<usize>> {
     let place = |name: &String| {
         let place = frames.iter().position(|frame| frame.name == *name);

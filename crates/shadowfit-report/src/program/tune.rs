@@ -1,4 +1,4 @@
-//! `report tune`: the technique with the least error in a scene, within a budget.
+//! `report tune`: searches the technique with the least error in a scene, within a budget.
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -14,13 +14,13 @@ use crate::job::Job;
 pub(crate) struct Args {
     #[command(flatten)]
     job: Job,
-    /// Most maps
+    /// Greatest number of maps
     #[arg(long, default_value_t = 4, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=8))]
     maps: u32,
     /// Width and height of each map, in texels
     #[arg(long, default_value_t = 2048, value_name = "N", value_parser = clap::value_parser!(u32).range(256..=8192))]
     resolution: u32,
-    /// Frames of the path that are measured, evenly picked
+    /// Number of measured frames of the path, evenly spread
     #[arg(long, default_value_t = 12, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     frames: u32,
     #[arg(
@@ -29,8 +29,8 @@ pub(crate) struct Args {
         value_parser = weights,
         default_value = "",
         hide_default_value = true,
-        help = "What counts against a technique, such as \"wrong=1,hole=20\": wrong, false_shadow, false_light, hole, \
-                mean_error and crawl, all shares in per cent"
+        help = "Weights of errors, such as \"wrong=1,hole=20\": wrong, false_shadow, false_light, hole, \
+                light_error and crawl, all shares in per cent"
     )]
     weights: Weights,
     /// Folder for technique.toml, technique.rs and steps.md
@@ -38,7 +38,7 @@ pub(crate) struct Args {
     out: PathBuf,
 }
 
-/// Searches, and writes what was found and what each change bought.
+/// Searches, and writes the technique and the gain of each change.
 pub(crate) fn run(args: &Args, interrupt: &Interrupt) -> Result<()> {
     ensure!(
         !args.job.drawing.changes_techniques(),
@@ -72,8 +72,8 @@ pub(crate) fn run(args: &Args, interrupt: &Interrupt) -> Result<()> {
     print(format_args!("{steps}\n{code}\n{folder}: technique.toml (for --technique), technique.rs, steps.md\n"))
 }
 
-/// A number of the frames, in pairs of neighbours that are evenly spread: fits depend on the frame before, and so does
-/// crawl.
+/// Picks `count` of the frames, as evenly spread pairs of neighbours, since fits and crawl depend on the
+/// previous frame.
 fn picked(views: &[View], count: usize) -> Vec<View> {
     if count >= views.len() {
         return views.to_vec();
@@ -89,7 +89,7 @@ fn picked(views: &[View], count: usize) -> Vec<View> {
     (0..pairs).flat_map(pair).take(count).collect()
 }
 
-/// All changes that were tried, as Markdown.
+/// Returns all changes that were tried, as Markdown.
 fn steps(tuned: &Tuned) -> String {
     let mut text = String::from("| change | error | wrong % | false shadow % | false light % | hole % | bought |\n");
     text += "|---|---:|---:|---:|---:|---:|---|\n";
@@ -99,7 +99,7 @@ fn steps(tuned: &Tuned) -> String {
         let bought = if step.is_kept && best.is_finite() {
             format!("{:.1}%", 100.0 * (best - step.error) / best)
         } else if step.is_kept {
-            "the start".to_owned()
+            "start".to_owned()
         } else {
             "-".to_owned()
         };
@@ -118,7 +118,7 @@ fn steps(tuned: &Tuned) -> String {
         }
     }
     if tuned.stopped_early {
-        text += "\nStopped before all was tried.\n";
+        text += "\nStopped before all changes were tried.\n";
     }
     text
 }
@@ -127,14 +127,14 @@ fn weights(text: &str) -> Result<Weights> {
     let mut weights = Weights::default();
     for part in text.split(',').filter(|part| !part.is_empty()) {
         let (name, value) = part.split_once('=').with_context(|| format!("\"{part}\" is not NAME=WEIGHT"))?;
-        let value: f64 = value.trim().parse().with_context(|| format!("\"{value}\" is no number"))?;
-        ensure!(value.is_finite() && value >= 0.0, "{name}: {value} is no weight; give 0 or more");
+        let value: f64 = value.trim().parse().with_context(|| format!("\"{value}\" is not a number"))?;
+        ensure!(value.is_finite() && value >= 0.0, "{name}: {value} is not a weight; give 0 or more");
         let weight = match name.trim() {
             "wrong" => &mut weights.wrong,
             "false_shadow" => &mut weights.false_shadow,
             "false_light" => &mut weights.false_light,
             "hole" => &mut weights.hole,
-            "mean_error" => &mut weights.mean_error,
+            "light_error" => &mut weights.light_error,
             "crawl" => &mut weights.crawl,
             other => anyhow::bail!("there is no weight \"{other}\""),
         };

@@ -1,4 +1,4 @@
-//! Contestants whose shadows are known: the library finds the errors that they have, and no others.
+//! Contestants with known shadows: the library finds exactly the errors that they have.
 
 use anyhow::Result;
 use glam::dcamera::rh::{proj::directx::orthographic, view::look_to_mat4};
@@ -13,7 +13,7 @@ use shadowfit_truth::{MapReading, MeasuredMap, PixelCamera, Tracer, Truth, Truth
 
 /// Width and height of the pictures, in pixels.
 const SIZE: [u32; 2] = [96, 54];
-/// Texels across and down the map, which is 40 m wide.
+/// Texels along each side of the map, which is 40 m wide.
 const TEXELS: u32 = 2048;
 
 /// A renderer that traces its shadows.
@@ -23,14 +23,14 @@ struct Traced {
     technique: usize,
 }
 
-/// Its techniques.
+/// Indices of its techniques.
 const RAYS: usize = 0;
 const NO_SHADOWS: usize = 1;
 const FACTORS: usize = 2;
 const LOOKUP: usize = 3;
 
 impl Traced {
-    /// Brightness and light factor of each pixel.
+    /// Returns brightness and light factor of each pixel.
     fn pixels(&self, frame: &Frame) -> Vec<[f32; 2]> {
         let tracer = self.tracer.as_ref().expect("a scene");
         let camera = PixelCamera::new(frame.camera(), SIZE);
@@ -99,7 +99,7 @@ impl Contestant for Traced {
     }
 }
 
-/// A map of 40 m around the origin, depth 1 nearest to the light.
+/// Returns the matrix of a map of 40 m around the origin, with depth 1 nearest to the light.
 fn clip_from_world(to_light: DVec3) -> DMat4 {
     orthographic(-20.0, 20.0, -20.0, 20.0, 80.0, 0.0) * look_to_mat4(to_light * 40.0, -to_light, DVec3::X)
 }
@@ -118,7 +118,7 @@ fn lookup(frame: &Frame) -> ShadowLookup {
     }
 }
 
-/// A floor, and a box on it.
+/// Returns a floor and a box on it.
 fn objects() -> Vec<Vec<Corners>> {
     let floor = [[-10.0, -10.0], [-10.0, 10.0], [10.0, 10.0], [10.0, -10.0]].map(|[x, z]| Vec3::new(x, 0.0, z));
     let [a, b, c, d] = floor;
@@ -128,7 +128,7 @@ fn objects() -> Vec<Vec<Corners>> {
     vec![vec![[a, b, c], [a, c, d]], sides.map(|side| side.map(|corner: usize| corners[corner])).collect()]
 }
 
-/// Two frames of a path, 10 cm apart.
+/// Returns two frames of a path, 10 cm apart.
 fn frames() -> Vec<Frame> {
     let light = DVec3::new(0.5, -0.7, 0.2).normalize();
     let frame = |frame: u32| Frame {
@@ -175,7 +175,7 @@ fn perfect_shadows_have_no_errors_and_missing_shadows_are_counted() {
     // Every shadow is missing: each dark pixel is wrong.
     assert!(of(NO_SHADOWS, "wrong %") > 2.0, "{}", of(NO_SHADOWS, "wrong %"));
     assert_eq!(of(NO_SHADOWS, "false shadow %"), 0.0);
-    // A fine map errs at edges alone.
+    // A fine map has errors only at edges.
     let (wrong, edge) = (of(LOOKUP, "wrong %"), of(LOOKUP, "edge %"));
     assert!(wrong < 0.5 && wrong == edge, "{wrong} {edge}");
     assert!(of(LOOKUP, "change %") < 0.05, "the map keeps its place");
@@ -185,7 +185,7 @@ fn perfect_shadows_have_no_errors_and_missing_shadows_are_counted() {
 fn results_become_tables_json_and_the_run_of_a_page() {
     let results = judged();
     let text = results.to_markdown(Some(NO_SHADOWS));
-    assert!(text.starts_with("## Overall\n\n| fit | wrong % | x no shadows | crawl % |"), "{text}");
+    assert!(text.starts_with("## Overall\n\n| fit | wrong % | x no shadows | light error % |"), "{text}");
     assert!(text.contains("\n## box\n") && text.contains("| no shadows |"), "{text}");
     assert!(!results.to_markdown(None).contains("x no shadows"));
     let json = results.to_json(&serde_json::json!({ "every": 1 }));
@@ -198,7 +198,7 @@ fn results_become_tables_json_and_the_run_of_a_page() {
 
 #[test]
 fn pictures_of_another_place_are_refused() {
-    /// Draws from another place without shadows.
+    /// A contestant that always draws from the wrong position, without shadows.
     struct Stuck(Traced);
     impl Contestant for Stuck {
         type Maps = DMat4;

@@ -1,4 +1,4 @@
-//! The library with renderers of the tests' own making, published figures, and the program.
+//! Tests of the library with renderers made for the tests, of published figures, and of the program.
 
 mod contestant;
 mod numbers;

@@ -1,4 +1,4 @@
-//! Numbers that were measured of other code's fits elsewhere are found again here, from the same maps and scenes.
+//! Published measures of other code's fits, reproduced from the same maps and scenes.
 
 use shadowfit_report::geometry::Source;
 use shadowfit_report::peers::{FitFile, Ranking, Row, Scenarios};
@@ -6,7 +6,8 @@ use shadowfit_truth::Tracer;
 
 use crate::scratch::shared;
 
-/// Rows of scene zdm2 in the README beside the fit files, in the order of [`Row::columns`] without [`UNPUBLISHED`].
+/// Rows of scene zdm2 in the README next to the fit files, in the order of [`Row::columns`] without
+/// [`UNPUBLISHED`].
 const ROWS: [(&str, [f64; 15]); 5] = [
     ("xna", [1.0, 0.0, 45.9, 45.9, 5.09, 8.52, 8.95, 100.0, 751_561.0, 406_844.0, 1.29, 0.353, 0.0, 0.561, 14.4]),
     ("three-csm", [4.0, 0.0, 0.0, 0.0, 2.91, 5.94, 6.36, 100.0, 125_855.0, 63_728.0, 2.41, 0.0003, 100.0, 0.0, 119.0]),
@@ -21,7 +22,7 @@ const ROWS: [(&str, [f64; 15]); 5] = [
     ("bevy", [4.0, 0.0, 0.0, 61.9, 2.69, 5.61, 6.02, 100.0, 99_711.0, 50_672.0, 2.85, 0.0003, 100.0, 0.0, 0.994]),
 ];
 
-/// The column that is published for all scenes together only.
+/// The column that is published only for all scenes together.
 const UNPUBLISHED: &str = "kept %";
 
 /// Critical resolutions of the same fits at light elevations of 15, 45 and 80 degrees.
@@ -55,7 +56,8 @@ fn the_published_numbers_of_five_peers_are_found_again_to_the_last_digit() {
 fn assert_row(peer: &str, row: &Row, published: [f64; 15]) {
     let found = row.columns().into_iter().filter(|(column, _)| *column != UNPUBLISHED);
     for ((column, found), published) in found.zip(published) {
-        // Published with three digits, at most four decimals, resolutions whole; rounded to five decimals before that.
+        // Published with three digits, at most four decimals, whole resolutions. Before that, rounded to five
+        // decimals.
         let last_digit = if column.starts_with("crit") { 1.0 } else { 10f64.powf(published.log10().floor() - 2.0) };
         let allowed = 0.5 * last_digit.clamp(1e-4, 1.0) + 0.5e-5;
         assert!((found - published).abs() <= allowed, "{peer}, {column}: {found}, not {published}");

@@ -1,4 +1,4 @@
-//! `report peers` as a program: what it writes, and how it ends when it is given nonsense.
+//! `report peers` as a program: its output, and its reaction to bad input.
 
 use std::path::Path;
 use std::process::Output;
@@ -25,14 +25,14 @@ const SCENARIOS: &str = r#"{
 /// The floor's corners.
 const FLOOR: [f32; 9] = [-50.0, 0.0, -50.0, -50.0, 0.0, 150.0, 150.0, 0.0, -50.0];
 
-/// The scenarios without the scene's file.
+/// Returns the scenarios without the scene's file.
 fn without_file() -> String {
     let scenarios = SCENARIOS.replace("\"file\": \"floor.glb\", ", "");
     assert_ne!(scenarios, SCENARIOS);
     scenarios
 }
 
-/// A folder with the floor, its scenarios and a fit.
+/// Creates a folder with the floor, its scenarios and a fit.
 fn with_floor(name: &str) -> Scratch {
     let scratch = Scratch::new(name);
     scratch.file("scenarios.json", SCENARIOS);
@@ -55,7 +55,7 @@ impl Scratch {
     }
 }
 
-/// A map of 20 m around the camera.
+/// Returns a fit with a map of 20 m around the camera.
 fn fit(id: &str) -> FitFile {
     let view_proj = [0.1, 0.0, 0.0, 0.0, 0.0, 0.0, -0.05, 0.0, 0.0, -0.1, 0.0, 0.0, 0.0, 0.0, 0.5, 1.0];
     let map = FitMap { view_proj, resolution: 1000, resolution_xy: None, split_near: 0.1, split_far: 100.0 };
@@ -71,7 +71,8 @@ fn a_report_holds_the_same_row_on_screen_for_people_and_for_programs() {
     let scratch = with_floor("whole");
     let output = scratch.report(&["scenarios.json", "fit.json", "--triangles", ".", "--no-render", "-o", "out/tables"]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    // A texel of 2 cm, a pixel of 4.2767 mm: 4.677 pixels, 2.225 octaves, in the bin around 2.223; 4677 in 20 m.
+    // A texel of 2 cm, a pixel of 4.2767 mm: 4.677 pixels, 2.225 octaves, in the bin around 2.223; 4677 in 20
+    // m.
     let row = "| plain | 1 | 0 | - | - | 2.22 | 2.22 | 2.22 | 100 | 4677 | 4677 |";
     let screen = String::from_utf8_lossy(&output.stdout);
     assert!(screen.contains(row), "{screen}");
@@ -177,7 +178,7 @@ fn whole_numbers_with_a_point_are_measured_alike_and_others_are_refused() {
     assert_refused(&output, &["bad.json: frames[0].frame: 0.5 is not a whole number"]);
 }
 
-/// Asserts that a program refused its input with a message of these words.
+/// Asserts that the program refused its input with a message that contains these words.
 fn assert_refused(output: &Output, words: &[&str]) {
     let message = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(REFUSED), "{message}");
@@ -196,11 +197,11 @@ fn gpu_fits_are_drawn_and_their_pictures_stand_in_the_same_rows() {
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let json: serde_json::Value = serde_json::from_str(&scratch.text("out/table.json")).expect("JSON");
     let row = &json["fits"][0]["groups"]["floor/90"];
-    // A plain floor under a vertical sun: nothing can go wrong.
+    // A plain floor under a vertical sun has no errors.
     for column in ["wrong %", "false shadow %", "false light %", "hole %", "edge %"] {
         assert_eq!(row[column].as_f64(), Some(0.0), "{column}");
     }
-    // 0.5 m on a screen of 90 pixels over 4 m: 51.3 mm a pixel, 20 mm a texel.
+    // 0.5 m on a screen of 90 pixels over 4 m: 51.3 mm per pixel, 20 mm per texel.
     let texels = row["ppt p50"].as_f64().expect("a number");
     assert!((texels / 0.3898 - 1.0).abs() < 0.01, "{texels} pixels per texel");
     assert!(row["crit gm"].as_f64().is_some(), "the figures of the fit are there too");
@@ -220,10 +221,10 @@ fn gpu_a_perspective_map_is_measured_and_its_picture_refused_with_the_reason() {
     assert!(scratch.report(&[&arguments[..], &["--no-render"]].concat()).status.success());
 }
 
-/// Every so many frames of each path are taken, with the one before for what a fit knows of it.
+/// Interval of the selected frames. The frame before each one is also selected, since fits depend on it.
 const EVERY: usize = 10;
 
-/// Some of the frames of two scenes, and Bevy's maps for them, as files.
+/// Writes files with some frames of two scenes and Bevy's maps for them.
 fn a_part_of_the_peers(scratch: &Scratch, folder: &Path) {
     let mut scenarios = Scenarios::read(&folder.join("scenarios.json")).expect("scenarios");
     let mut bevy = FitFile::read(&folder.join("fits/bevy.json")).expect("Bevy's fit");
@@ -233,7 +234,7 @@ fn a_part_of_the_peers(scratch: &Scratch, folder: &Path) {
     });
     let ids: Vec<&str> = scenarios.frames.iter().map(|frame| frame.id.as_str()).collect();
     bevy.frames.retain(|frame| ids.contains(&frame.id.as_str()));
-    // Scenes without a frame would be read for nothing.
+    // Remove scenes without a frame, so that they are not read.
     let used: Vec<usize> =
         (0..names.len()).filter(|scene| scenarios.frames.iter().any(|f| f.scene == *scene)).collect();
     for frame in &mut scenarios.frames {

@@ -1,4 +1,4 @@
-//! The program: reports of scenes, tuning, and how it ends when it is given nonsense.
+//! The program: reports of scenes, tuning, and its reaction to bad input.
 
 use std::process::{Command, Output, Stdio};
 
@@ -7,18 +7,18 @@ use shadowfit_testing::{adapter_name, refuses_missing_adapter};
 
 use crate::scratch::{REFUSED, Scratch, assert_success};
 
-/// The exit code after Ctrl-C.
+/// Exit code after Ctrl-C.
 const INTERRUPTED: i32 = 130;
-/// A look at the courtyard's middle from two places.
+/// A path that looks at the courtyard's middle from two positions.
 const PATH: &str = "near = 0.1\nfar = 60.0\nlight = { azimuth_deg = 40.0, elevation_deg = 45.0 }\n\
     [[keys]]\neye = [5.0, 3.0, 6.0]\ntarget = [0.0, 1.0, 0.0]\n\
     [[keys]]\neye = [4.0, 3.0, 6.5]\ntarget = [0.0, 1.0, 0.0]\n";
-/// Small pictures on the tests' adapter.
+/// Arguments for small pictures on the tests' adapter.
 fn small() -> [&'static str; 4] {
     ["--adapter", adapter_name(), "--size", "96x54"]
 }
 
-/// A folder with a path.
+/// Creates a folder with a path.
 fn with_path(name: &str) -> Scratch {
     let scratch = Scratch::new(name);
     scratch.file("path.toml", PATH);
@@ -66,7 +66,7 @@ fn a_report_has_tables_plots_pictures_and_a_page_that_needs_nothing_else() {
         assert_eq!(found.count(), 4, "{kind}s: two frames by two techniques");
     }
     assert!(scratch.text("out/plots/wrong.svg").contains("<svg"));
-    // What was looked at can be looked at again.
+    // The written path can be read for another report.
     assert_success(&scratch.small_report(&[
         "courtyard",
         "--path",
@@ -185,7 +185,7 @@ fn tuning_finds_the_same_technique_twice_and_says_what_each_change_bought() {
     assert!(technique.contains("name = \"tuned\"") && code.starts_with("let mut technique = Technique"));
     let bought = steps.lines().filter(|line| line.ends_with("% |")).count();
     assert!(bought >= 2, "changes that helped:\n{steps}");
-    // The file is a technique that reports take.
+    // Reports accept the file as a technique.
     let arguments = ["courtyard", "--path", "path.toml", "--technique", "a/technique.toml", "--technique", "xna-1"];
     assert_success(&scratch.small_report(&[&arguments[..], &["--resolution", "256", "-o", "out"]].concat()));
     let report = scratch.json("out/report.json");
@@ -210,7 +210,7 @@ fn what_is_finished_at_ctrl_c_is_written_and_said_to_be_a_part() {
     let arguments = ["courtyard", "--path", "long.toml", "--technique", "xna-1", "--resolution", "256", "-o", "out"];
     let mut command = scratch.command(&[&arguments[..], &small()].concat());
     let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().expect("the report starts");
-    // The folder is made when the first frame is about to be measured.
+    // The folder is created just before the first frame is measured.
     while !scratch.0.join("out/pictures").is_dir() {
         assert_eq!(child.try_wait().expect("a child"), None, "it ended before it began");
         std::thread::sleep(std::time::Duration::from_millis(20));

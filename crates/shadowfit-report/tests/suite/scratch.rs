@@ -1,11 +1,11 @@
-//! The folders that tests read and write, and the program that they start in them.
+//! The folders that tests read and write, and the program that they run there.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 use shadowfit_testing::{package_folder, package_program};
 
-/// The exit code of every refusal.
+/// Exit code after refused input.
 pub(crate) const REFUSED: i32 = 2;
 
 /// Folder with the files of one test, removed at the end.
@@ -52,12 +52,13 @@ impl Drop for Scratch {
     }
 }
 
-/// Asserts that the program ended well.
+/// Asserts that the program succeeded.
 pub(crate) fn assert_success(output: &Output) {
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
 }
 
-/// A folder of the collection of scenes and fits beside the workspace, or `None` with a word about it.
+/// Returns a folder of the collection of scenes and fits next to the workspace. Prints a note and returns
+/// `None` if it is missing.
 pub(crate) fn shared(name: &str) -> Option<PathBuf> {
     let folder = package_folder(env!("CARGO_MANIFEST_DIR")).join("../../../shared").join(name);
     if folder.is_dir() {

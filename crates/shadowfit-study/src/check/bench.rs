@@ -1,4 +1,5 @@
-//! What all checks draw: the built-in courtyard along a short walk, with the program's own renderer.
+//! The setup that all checks share: the built-in courtyard along a short walk, drawn by the program's own
+//! renderer.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -16,20 +17,21 @@ use super::outcome::Cancelled;
 use super::twin::LEAST_COSINE;
 use crate::{Evaluator, Judging, PreparedScene, View, next_turn};
 
-/// Size of the pictures, in pixels: large enough for thousands of pixels at edges, small enough for software adapters.
+/// Size of the pictures, in pixels: large enough for thousands of pixels at edges, small enough for software
+/// adapters.
 pub(super) const SIZE: [u32; 2] = [320, 180];
 
-/// Pixels from one point of [`Bench::points`] to the next, across and down.
+/// Step between the points of [`Bench::points`], across and down, in pixels.
 const POINT_STEP: usize = 2;
 
 /// Width and height of the maps, in texels.
 pub(super) const TEXELS: u32 = 512;
 
-/// Where shadows end, in metres: beyond the courtyard's walls.
+/// Shadow distance, in metres: beyond the courtyard's walls.
 const DISTANCE: f32 = 80.0;
 
-/// Length of a step of the walk, in metres, and its turn, in radians: those of a frame at a brisk walk and ten frames a
-/// second.
+/// Length of a step of the walk, in metres, and its turn, in radians: a frame of a brisk walk at ten frames
+/// per second.
 const STEP: f64 = 0.15;
 const TURN: f32 = 0.03;
 
@@ -48,18 +50,18 @@ impl<'a> Bench<'a> {
     ///
     /// # Errors
     ///
-    /// When the device has no memory for it.
+    /// If the device is out of memory.
     pub(super) fn new(gpu: &'a Gpu, is_cancelled: &'a AtomicBool) -> Result<Self> {
         let renderer = Renderer::new(gpu, &ShadowMapDescriptor::from(&technique()), 1)?;
         let scene = PreparedScene::new(gpu, renderer.material_layout(), default_scene())?;
         Ok(Self { gpu, scene, is_cancelled })
     }
 
-    /// Lets a browser draw and take input, and ends the check where it was cancelled or the device was lost.
+    /// Lets a browser draw and take input. Ends the check if it was cancelled or the device was lost.
     ///
     /// # Errors
     ///
-    /// [`Cancelled`], and the loss of the device.
+    /// [`Cancelled`], or the loss of the device.
     pub(super) async fn pause(&self) -> Result<()> {
         next_turn().await;
         if self.is_cancelled.load(Ordering::Relaxed) {
@@ -70,7 +72,7 @@ impl<'a> Bench<'a> {
         Ok(())
     }
 
-    /// The view after a number of steps of the walk.
+    /// Returns the view after a number of steps of the walk.
     pub(super) fn view(step: u32) -> View {
         let (eye, target) = default_camera();
         let turn = glam::Quat::from_rotation_y(-TURN * step as f32);
@@ -87,45 +89,45 @@ impl<'a> Bench<'a> {
         View { camera: camera.into(), direction: DIRECTION.normalize(), is_first: step == 0 }
     }
 
-    /// Makes a renderer, in a box since it is large and checks keep it while they wait.
+    /// Creates a renderer, boxed because it is large and checks keep it across await points.
     ///
     /// # Errors
     ///
-    /// When its shadow map cannot be made on this device.
+    /// If its shadow map cannot be created on this device.
     pub(super) fn renderer(&self, descriptor: &ShadowMapDescriptor) -> Result<Box<Renderer>, ShadowMapError> {
         Renderer::new(self.gpu, descriptor, 1).map(Box::new)
     }
 
-    /// Makes an evaluator of the pictures of a technique.
+    /// Creates an evaluator for the pictures of a technique.
     ///
     /// # Errors
     ///
-    /// As [`Self::renderer`].
+    /// As for [`Self::renderer`].
     pub(super) fn evaluator(&self, technique: &Technique) -> Result<Box<Evaluator>, ShadowMapError> {
         let renderer = Renderer::new(self.gpu, &ShadowMapDescriptor::from(technique), 1)?;
         Ok(Box::new(Evaluator::new(renderer, self.judging())))
     }
 
-    /// How pictures are judged.
+    /// Returns the settings for judging pictures.
     pub(super) fn judging(&self) -> Judging {
         Judging { size: SIZE, ray_offset: self.scene.ray_offset(), crawl: false, ..Judging::default() }
     }
 
-    /// Fits the maps of a view alone.
+    /// Fits the maps of a view, independent of other frames.
     ///
     /// # Errors
     ///
-    /// When the technique makes no sense.
+    /// If the technique is invalid.
     pub(super) fn fit(&self, technique: &Technique, inputs: Inputs, view: &View) -> Result<Vec<FittedMap>> {
         let maps = self.scene.fit_alone(&mut ShadowFitter::new(technique), inputs, view);
         Ok(maps.context("no maps could be fitted")?.to_vec())
     }
 
-    /// Draws maps with all casters that they can hold, and nothing else.
+    /// Draws only maps, with all casters that they can hold.
     ///
     /// # Errors
     ///
-    /// When the maps do not suit the renderer's shadow map.
+    /// If the maps do not match the renderer's shadow map.
     pub(super) fn draw_maps(&mut self, renderer: &mut Renderer, view: &View, maps: &[FittedMap]) -> Result<()> {
         let targets = ProbeTargets::new(&self.gpu.device, [1, 1]);
         let atmosphere = view.atmosphere();
@@ -133,7 +135,8 @@ impl<'a> Bench<'a> {
         Ok(renderer.draw_probe(self.gpu, &mut self.scene.gpu_scene, &frame, &targets)?)
     }
 
-    /// Points of the view's surfaces that face the light, found by rays on the CPU, relative to the eye.
+    /// Returns points on the view's surfaces that face the light, found by rays on the CPU, relative to the
+    /// eye.
     pub(super) fn points(&self, view: &View) -> Vec<Point> {
         let judging = self.judging();
         let rays = self.scene.rays();
@@ -153,12 +156,12 @@ impl<'a> Bench<'a> {
     }
 }
 
-/// The recommended technique with small maps, and without a fade at the end of shadows.
+/// Returns the recommended technique with small maps and without a fade at the shadow distance.
 pub(super) fn technique() -> Technique {
     small(&Technique::default())
 }
 
-/// A technique with small maps, and without a fade at the end of shadows.
+/// Returns a technique with small maps and without a fade at the shadow distance.
 pub(super) fn small(technique: &Technique) -> Technique {
     technique.with_resolution(TEXELS, TEXELS).with_max_distance(DISTANCE).with_fade(0.0)
 }

@@ -1,5 +1,5 @@
-//! The proof that maps have no holes, and pictures that are judged by rays: no visible point lies outside of its maps, and
-//! none misses its caster.
+//! Proves that maps have no holes, and judges pictures by rays: every visible point lies inside of its maps,
+//! and no caster is missing.
 
 use anyhow::{Context, Result};
 use shadowfit::proof::CoverageProof;
@@ -16,7 +16,7 @@ pub(super) const ABOUT: &str = "The proof that maps hold every visible point and
 pub(super) const TOLERANCE: &str = "None: each map is proven, no visible point lies outside of the maps, and no shadow is \
                                     missing because a map lacks its caster.";
 
-/// Steps of the walk that are looked at.
+/// Steps of the walk that are checked.
 const STEPS: [u32; 3] = [0, 6, 12];
 
 /// Runs the check.
@@ -24,7 +24,7 @@ pub(super) async fn run(bench: &mut Bench<'_>) -> Result<Outcome> {
     run_with(bench, |view| view).await
 }
 
-/// The same with maps that are fitted to other views.
+/// Runs the check with maps that are fitted to other views.
 async fn run_with(bench: &mut Bench<'_>, fitted_to: impl Fn(View) -> View) -> Result<Outcome> {
     let mut evaluator = bench.evaluator(&technique())?;
     evaluator.renderer.sun_mut().fitter_mut().set_technique(&technique());

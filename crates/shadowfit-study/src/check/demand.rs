@@ -1,4 +1,4 @@
-//! The compute pass that counts what a depth buffer shows against the same counts on the CPU.
+//! Compares the compute pass that counts a depth buffer's visible points with the same counts on the CPU.
 
 use anyhow::{Result, ensure};
 use shadowfit::{DepthConvention, VisibleDemand};
@@ -12,13 +12,14 @@ use super::outcome::Outcome;
 use crate::View;
 
 pub(super) const NAME: &str = "Visible points";
-pub(super) const ABOUT: &str = "Counts of visible points, by which maps are placed: those of the device's pass over a depth \
-                                buffer, with those of the CPU from the same depths.";
+pub(super) const ABOUT: &str = "Compares the counts of visible points, which place the maps, from the device's pass \
+                                over a depth buffer with the CPU's counts from the same depths.";
 pub(super) const TOLERANCE: &str = "1 point in 1000 in a neighbouring cell: the device computes in f32, whose rounding \
                                     matters to points at the border of a cell.";
 
-/// Greatest share of the points that rounding moves into a neighbouring cell or bin. A point's coordinates and slope have
-/// an error of some 2⁻¹⁴ of a cell or bin where neighbouring depths are subtracted, along each of four axes to either side.
+/// Greatest share of the points that rounding moves into a neighbouring cell or bin. Neighbouring depths are
+/// subtracted, so a point's coordinates and slope have an error of about 2⁻¹⁴ of a cell or bin, on either
+/// side along each of four axes.
 const ROUNDING: f64 = 0.001;
 
 /// Runs the check.
@@ -26,7 +27,7 @@ pub(super) async fn run(bench: &mut Bench<'_>) -> Result<Outcome> {
     run_with(bench, |view| view).await
 }
 
-/// The same with another view for the CPU.
+/// Runs the check with another view for the CPU.
 async fn run_with(bench: &mut Bench<'_>, on_cpu: impl Fn(DemandView) -> DemandView) -> Result<Outcome> {
     let gpu = bench.gpu;
     let mut pass = match DemandPass::new(&gpu.device, &gpu.queue, 1) {
@@ -62,7 +63,7 @@ fn demand_view(view: &View) -> Result<DemandView> {
     })
 }
 
-/// Waits for the counts; a browser does other things meanwhile.
+/// Waits for the counts. A browser does other work meanwhile.
 async fn arrived(bench: &Bench<'_>, pass: &mut DemandPass) -> Result<VisibleDemand> {
     loop {
         bench.pause().await?;
@@ -76,7 +77,7 @@ async fn arrived(bench: &Bench<'_>, pass: &mut DemandPass) -> Result<VisibleDema
 fn outcome(found: &VisibleDemand, expected: &VisibleDemand) -> Outcome {
     let points: u32 = expected.demand().counts.iter().sum();
     let differ = |found: &[u32], expected: &[u32]| {
-        // A point that is counted elsewhere is missed in one place and too many in the other.
+        // A point in a wrong cell is missing in one cell and surplus in another.
         found.iter().zip(expected).map(|(a, b)| a.abs_diff(*b)).sum::<u32>().div_ceil(2)
     };
     let cells = differ(found.demand().counts, expected.demand().counts);
@@ -85,7 +86,7 @@ fn outcome(found: &VisibleDemand, expected: &VisibleDemand) -> Outcome {
     Outcome::of(
         points > 0 && f64::from(cells.max(bins)) <= most,
         format!(
-            "of {points} points {cells} lie in another cell of the grid, and {bins} in another bin of the histogram"
+            "of {points} points, {cells} are in another cell of the grid, and {bins} in another bin of the histogram"
         ),
     )
 }

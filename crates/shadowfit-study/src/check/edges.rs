@@ -1,4 +1,4 @@
-//! Exact edges on the device against shadow rays on the CPU.
+//! Compares exact edges on the device with shadow rays on the CPU.
 
 use anyhow::{Context, Result};
 use shadowfit::settings::Edges;
@@ -11,20 +11,20 @@ use super::outcome::Outcome;
 use crate::{NamedTechnique, SharedTruth, View};
 
 pub(super) const NAME: &str = "Exact edges";
-pub(super) const ABOUT: &str = "A picture whose shadow edges the device traces, with shadow rays that the CPU traces for the \
-                                same pixels.";
-pub(super) const TOLERANCE: &str = "1/256 of a pixel: rasterisers snap corners of triangles to such steps, so a pixel may \
-                                    differ where a shadow's edge passes its centre that closely.";
+pub(super) const ABOUT: &str = "Compares a picture whose shadow edges the device traces with shadow rays that the CPU \
+                                traces for the same pixels.";
+pub(super) const TOLERANCE: &str = "1/256 of a pixel: rasterisers snap corners of triangles to such steps, so a pixel \
+                                    may differ where a shadow's edge passes its centre that closely.";
 
-/// The preset whose edges are traced.
+/// Preset with traced edges.
 const PRESET: &str = "exact-4";
 
-/// Steps in a pixel to which the device must round the corners of triangles. The pass takes a stored depth to lie that close to its
-/// triangle.
+/// Steps per pixel to which the device must round the corners of triangles. The pass assumes that a stored
+/// depth lies that close to its triangle.
 const NEEDED: u32 = 256;
 
-/// Steps of a pixel by which rays are moved to look for an edge: the snap of vertices, rounded up to an odd number, so that
-/// a step lies at the pixel's centre.
+/// Steps per pixel by which rays are moved to look for an edge: the vertex snap, rounded up to an odd number,
+/// so that a step lies at the pixel's centre.
 const STEPS: u32 = 257;
 
 /// Runs the check.
@@ -32,17 +32,17 @@ pub(super) async fn run(bench: &mut Bench<'_>) -> Result<Outcome> {
     run_with(bench, SharedTruth::default()).await
 }
 
-/// The same with a truth that may be traced already.
+/// Runs the check with a truth that may already be traced.
 async fn run_with(bench: &mut Bench<'_>, mut truth: SharedTruth) -> Result<Outcome> {
     let steps = steps_in_a_pixel(bench.gpu).await?;
     if steps < NEEDED {
         return Ok(Outcome::Unavailable(format!(
-            "the device rounds corners of triangles to 1/{steps} of a pixel. Exact edges need 1/{NEEDED}: about one pixel in a \
-             thousand is wrong on this device"
+            "the device rounds corners of triangles to 1/{steps} of a pixel. Exact edges need 1/{NEEDED}: about one \
+             pixel in a thousand is wrong on this device"
         )));
     }
     let named = NamedTechnique::preset(PRESET).context("the preset whose edges are traced")?;
-    // One ray, through the pixel's centre, as the judge's.
+    // Like the judge, traces one ray through the pixel's centre.
     let technique = small(&named.technique).with_edges(Edges::Traced { samples: 1 });
     let view = Bench::view(0);
     let maps = bench.fit(&technique, named.inputs, &view)?;
@@ -68,14 +68,14 @@ fn outcome(bench: &Bench<'_>, view: &View, judged: &Judged) -> Outcome {
     Outcome::of(
         facing > 0 && far == 0,
         format!(
-            "{} of {facing} pixels differ, {far} of them farther than 1/256 of a pixel from an edge; {traced} pixels took \
-             rays",
+            "{} of {facing} pixels differ, {far} of them farther than 1/256 of a pixel from an edge; {traced} pixels \
+             took rays",
             wrong.len(),
         ),
     )
 }
 
-/// Whether rays a step beside a pixel's centre disagree about its light, or see no surface that is judged.
+/// Returns whether rays one step beside a pixel's centre disagree about its light, or show no judged surface.
 fn is_at_edge(bench: &Bench<'_>, view: &View, pixel: usize) -> bool {
     let (judging, rays) = (bench.judging(), bench.scene.rays());
     let fine = crate::Judging { size: SIZE.map(|side| side * STEPS), ..judging };
@@ -100,7 +100,7 @@ mod tests {
     fn gpu_corners_are_rounded_to_the_steps_that_drivers_name() {
         let gpu = shadowfit_testing::renderer_gpu();
         let steps = pollster::block_on(steps_in_a_pixel(&gpu)).expect("it draws");
-        // Mesa's software driver moves edges by steps, and what lies between them as exactly as it can.
+        // Mesa's software driver snaps edges to steps, and interpolates between them as exactly as it can.
         let named = (1.0 / shadowfit_testing::subpixel_step(&gpu.adapter.get_info())) as u32;
         assert!([named, 1024].contains(&steps), "{steps} steps, not {named}");
     }

@@ -1,8 +1,8 @@
-//! What a report says about the program and the device.
+//! Facts about the program and the device in a report.
 
 use shadowfit_render::Gpu;
 
-/// Names and values, in the order in which they are shown.
+/// Returns names and values, in display order.
 pub(super) fn facts(gpu: &Gpu) -> Vec<(&'static str, String)> {
     let info = gpu.adapter.get_info();
     let or_unknown = |text: String| if text.trim().is_empty() { "unknown".to_owned() } else { text };
@@ -22,7 +22,7 @@ fn system() -> String {
     format!("{} {}", std::env::consts::OS, std::env::consts::ARCH)
 }
 
-/// The limits that decide how maps are drawn and whether edges are traced.
+/// Returns the limits that decide how maps are drawn and whether edges are traced.
 fn limits(limits: &wgpu::Limits) -> String {
     let mib = |bytes: u64| bytes >> 20;
     format!(
@@ -37,7 +37,7 @@ fn limits(limits: &wgpu::Limits) -> String {
     )
 }
 
-/// The features that the program would use, and those of them that the device lacks.
+/// Returns the features that the program would use, and the ones that the device lacks.
 fn features(gpu: &Gpu) -> String {
     let wanted = shadowfit_render::Wanted::default().features;
     let has = gpu.device.features() & wanted;

@@ -1,4 +1,5 @@
-//! Maps of the other formats against maps of 32-bit depth: their texels, and the factors that the device looks up in them.
+//! Compares maps of other formats with maps of 32-bit depth: their texels, and the factors that the device
+//! looks up in them.
 
 use anyhow::Result;
 use shadowfit::FittedMap;
@@ -16,15 +17,16 @@ use super::twin::Twin;
 use crate::View;
 
 pub(super) const NAME: &str = "Map formats";
-pub(super) const ABOUT: &str = "Maps in 16-bit depth and in four colour formats, one of them packed into bytes, with maps in \
-                                32-bit depth: their texels and the factors that are looked up in them.";
-pub(super) const TOLERANCE: &str = "A step of the format for a stored depth, and 2/256 for a factor, as for the look-up. \
-                                    Comparisons closer than a step may go either way.";
+pub(super) const ABOUT: &str = "Compares maps in 16-bit depth and in four colour formats, one of them packed into \
+                                bytes, with maps in 32-bit depth: their texels and the factors that are looked up in \
+                                them.";
+pub(super) const TOLERANCE: &str = "A step of the format for a stored depth, and 2/256 for a factor, as for the \
+                                    look-up. Comparisons closer than a step may go either way.";
 
-/// Bilinear look-ups, which all formats have.
+/// Bilinear look-ups, which all formats support.
 const FILTER: FilterKind = FilterKind::Hardware2x2;
 
-/// What all formats are compared with.
+/// Reference that all formats are compared with.
 struct Reference {
     view: View,
     points: Vec<Point>,
@@ -48,17 +50,17 @@ pub(super) async fn run(bench: &mut Bench<'_>) -> Result<Outcome> {
     run_with(bench, &formats(), precision).await
 }
 
-/// All formats but the one that they are compared with.
+/// Returns all formats except the reference format.
 fn formats() -> Vec<MapFormat> {
     MapFormat::ALL.into_iter().filter(|format| *format != MapFormat::Depth32Float).collect()
 }
 
-/// Greatest rounding of a stored depth of 0..=1: a step, since drivers round to the nearest or cut off.
+/// Returns the greatest rounding of a stored depth of 0..=1: one step, because drivers may round or truncate.
 fn precision(format: MapFormat) -> f32 {
     depth_step(format, 1.0)
 }
 
-/// The same for some formats, with other roundings.
+/// Runs the check for some formats, with other roundings.
 async fn run_with(
     bench: &mut Bench<'_>,
     formats: &[MapFormat],
@@ -132,8 +134,8 @@ impl Found {
         Outcome::of(
             *formats > 0 && wrong.is_empty(),
             format!(
-                "{formats} formats: {} of {:.1} million texels and {} of {} factors differ{named}; greatest difference of a \
-                 factor {:.4}{refused}",
+                "{formats} formats: {} of {:.1} million texels and {} of {} factors differ{named}; greatest \
+                 difference of a factor {:.4}{refused}",
                 difference.wrong,
                 difference.texels as f64 / 1e6,
                 compared.wrong,
@@ -144,7 +146,7 @@ impl Found {
     }
 }
 
-/// The format's name for people.
+/// Returns the format's display name.
 const fn name(format: MapFormat) -> &'static str {
     match format {
         MapFormat::Depth32Float => "32-bit depth",

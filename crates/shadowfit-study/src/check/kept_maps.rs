@@ -1,4 +1,4 @@
-//! Maps that are kept from frame to frame against maps that are drawn anew, over a short walk.
+//! Compares maps that are kept from frame to frame with newly drawn maps, over a short walk.
 
 use anyhow::{Context, Result};
 use shadowfit::ShadowFitter;
@@ -11,25 +11,26 @@ use super::texels::{Difference, Texels};
 use crate::NamedTechnique;
 
 pub(super) const NAME: &str = "Kept maps";
-pub(super) const ABOUT: &str = "Maps that are kept along a walk, and drawn only where something changes, with maps that are \
-                                drawn anew in each frame, texel by texel. A figure moves.";
+pub(super) const ABOUT: &str = "Compares maps that are kept along a walk, and redrawn only where something changes, \
+                                with maps that are redrawn in each frame, texel by texel. A figure moves.";
 pub(super) const TOLERANCE: &str = "1/256 of a texel: rasterisers snap corners of triangles to such steps. A depth may \
-                                    differ by the slope over that distance, and of the texels at edges 2/256 may hold the \
-                                    surface beside them.";
+                                    differ by the slope over that distance, and 2/256 of the texels at edges may \
+                                    hold the neighbouring surface.";
 
-/// The preset whose maps are kept: windows that are placed by boxes, so that nothing waits for the frame before.
+/// Preset of the kept maps: windows that are placed by boxes, so that they do not depend on the previous
+/// frame.
 const PRESET: &str = "windows-boxes-4";
 
-/// Width and height of the maps, in texels: there are hundreds of them.
+/// Width and height of the maps, in texels: small, because there are hundreds of maps.
 const TEXELS: u32 = 256;
 
 /// Frames of the walk.
 const FRAMES: u32 = 12;
 
-/// Time from frame to frame, in seconds.
+/// Time between frames, in seconds.
 const FRAME: f32 = 0.1;
 
-/// The animation in which the figure walks.
+/// Animation in which the figure walks.
 const WALK: usize = 0;
 
 /// Runs the check.
@@ -39,8 +40,8 @@ pub(super) async fn run(bench: &mut Bench<'_>) -> Result<Outcome> {
     Ok(outcome(&difference, reused))
 }
 
-/// Calls `compare` with the number of each frame, the texels of its kept maps, and those that are drawn anew. Returns how
-/// many maps were kept.
+/// Calls `compare` with the number of each frame, the texels of its kept maps, and the texels of newly drawn
+/// maps. Returns the number of kept maps.
 async fn walk(bench: &mut Bench<'_>, mut compare: impl FnMut(u32, &[Texels], &[Texels])) -> Result<usize> {
     let named = NamedTechnique::preset(PRESET).context("the preset whose maps are kept")?;
     let technique = small(&named.technique).with_resolution(TEXELS, TEXELS);
@@ -71,8 +72,8 @@ fn outcome(difference: &Difference, reused: usize) -> Outcome {
     Outcome::of(
         difference.is_explained() && reused > 0,
         format!(
-            "of {:.1} million texels in {FRAMES} frames {wrong} hold a wrong depth, and of {:.1} million at edges {moved} hold \
-             the surface beside them; {reused} maps were kept",
+            "of {:.1} million texels in {FRAMES} frames, {wrong} hold a wrong depth, and of {:.1} million at edges, \
+             {moved} hold the neighbouring surface; {reused} maps were kept",
             *texels as f64 / 1e6,
             *at_edges as f64 / 1e6,
         ),
@@ -99,7 +100,7 @@ mod tests {
                 moved[1].depths.rotate_right(1);
             }
             shifted.add_all(&moved, anew);
-            // In the eighth frame the maps of the frame before.
+            // In the eighth frame, uses the maps of the previous frame.
             let stays = before.replace(kept.to_vec()).filter(|_| frame == 7);
             stale.add_all(&stays.unwrap_or_else(|| kept.to_vec()), anew);
         }));

@@ -1,4 +1,5 @@
-//! The look-up's WGSL on the device against the same look-up on the CPU, from maps that the device drew.
+//! Compares the look-up's WGSL on the device with the same look-up on the CPU, from maps that the device
+//! drew.
 
 use anyhow::Result;
 use shadowfit::FittedMap;
@@ -12,25 +13,25 @@ use super::twin::Twin;
 use crate::View;
 
 pub(super) const NAME: &str = "Look-up";
-pub(super) const ABOUT: &str = "Shadow factors that the device looks up in its maps with eight filters, with those that the \
-                                CPU computes from the same texels.";
+pub(super) const ABOUT: &str = "Compares shadow factors that the device looks up in its maps with eight filters with \
+                                factors that the CPU computes from the same texels.";
 pub(super) const TOLERANCE: &str = "2/256: samplers place a look-up between texels in steps of 1/256 along both axes. \
                                     Comparisons closer than the rounding of f32 may go either way.";
 
-/// Biases of all kinds, in texels, each of them different.
+/// Biases of all kinds, in texels, with different values.
 const BIAS: BiasSettings =
     BiasSettings { constant: 0.5, slope: 0.75, normal_offset: 1.0, receiver_plane: 1.25, depth_steps: 1.0 };
 
-/// All filters whose look-ups lie at the same places whatever the map stores.
+/// Returns all filters whose look-up positions do not depend on the map's content.
 fn filters() -> impl Iterator<Item = FilterKind> {
     FilterKind::ALL.into_iter().filter(|filter| *filter != FilterKind::Pcss)
 }
 
-/// Factors compared, and by how much they lie beyond their ranges.
+/// Compared factors, and their distance from the allowed ranges.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Compared {
     pub(super) factors: usize,
-    /// Factors neither 0 nor 1.
+    /// Factors between 0 and 1.
     partly: usize,
     /// Factors beyond the tolerance.
     pub(super) wrong: usize,
@@ -44,7 +45,7 @@ impl Compared {
             let Some(range) = twin.factor(point) else { continue };
             let factor = f64::from(*factor);
             let beyond = (range.start - factor).max(factor - range.end).max(0.0);
-            // What is not a number lies beyond every range.
+            // NaN lies outside of every range.
             let beyond = if factor.is_nan() { 1.0 } else { beyond };
             self.factors += 1;
             self.partly += usize::from(factor > 0.0 && factor < 1.0);
@@ -59,7 +60,7 @@ pub(super) async fn run(bench: &mut Bench<'_>) -> Result<Outcome> {
     run_with(bench, filters(), |map| map).await
 }
 
-/// The same for some filters, with other maps on the CPU's side.
+/// Runs the check for some filters, with other maps on the CPU.
 async fn run_with(
     bench: &mut Bench<'_>,
     filters: impl Iterator<Item = FilterKind>,
@@ -88,7 +89,7 @@ async fn compare(
     on_cpu: &impl Fn(FittedMap) -> FittedMap,
     compared: &mut Compared,
 ) -> Result<()> {
-    // The automatic bias has two kinds.
+    // The automatic bias sets only two kinds of bias.
     let has_all = filter == FilterKind::Hardware2x2;
     let technique = if has_all { technique().with_look_up(filter, BIAS) } else { technique().with_filter(filter) };
     let mut renderer = bench.renderer(&ShadowMapDescriptor::from(&technique))?;
@@ -123,7 +124,7 @@ mod tests {
         assert!(matches!(found, Outcome::Passed(_)), "{found:?}");
     }
 
-    // Five times a filter with its shaders: 5 s on the software adapter.
+    // One filter with its shaders, five times: 5 s on the software adapter.
     #[test]
     fn gpu_factors_disagree_with_another_bias_or_place() {
         let fails = |what: &str, change: &dyn Fn(&mut FittedMap)| {

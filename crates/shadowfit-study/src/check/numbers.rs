@@ -1,5 +1,5 @@
-//! Numbers that shaders compute, read back: shadow factors at points, the texels of maps, and a depth buffer. Each number
-//! is a pixel of a picture of bits, which every device can draw.
+//! Numbers that shaders compute, read back: shadow factors at points, the texels of maps, and a depth buffer.
+//! Each number is a pixel of an integer picture with the float's bits, which every device can draw.
 
 use anyhow::Result;
 use shadowfit_render::{Gpu, ReadBack, bindings};
@@ -16,10 +16,10 @@ pub(super) struct Point {
     pub(super) normal: [f32; 3],
 }
 
-/// Points in a row of their picture; a power of two keeps the centres of pixels exact.
+/// Points per row of their picture. A power of two keeps the centres of pixels exact.
 const ROW: u32 = 256;
 
-/// Format of the pictures: the bits of floats.
+/// Format of the pictures, for the bits of floats.
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
 
 /// Draws a point into each pixel, and computes the factor there.
@@ -41,14 +41,14 @@ struct Varying {
 }
 ";
 
-/// A triangle over the whole picture.
+/// Draws a triangle over the whole picture.
 const WHOLE: &str = "
 @vertex fn vs(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
     return vec4<f32>(vec2<f32>(f32(index & 1u), f32(index >> 1u)) * 4.0 - 1.0, 0.5, 1.0);
 }
 ";
 
-/// The texels of all maps, one map below the other.
+/// Writes the texels of all maps, one map below the other.
 const TEXELS: &str = "
 @fragment fn fs(@builtin(position) pixel: vec4<f32>) -> @location(0) u32 {
     let at = vec2<i32>(pixel.xy);
@@ -56,7 +56,7 @@ const TEXELS: &str = "
 }
 ";
 
-/// The depths of a depth buffer.
+/// Writes the depths of a depth buffer.
 const DEPTHS: &str = "
 @group(0) @binding(0) var depths: texture_depth_2d;
 @fragment fn fs(@builtin(position) pixel: vec4<f32>) -> @location(0) u32 {
@@ -64,8 +64,9 @@ const DEPTHS: &str = "
 }
 ";
 
-/// A triangle in each cell of four by four pixels, moved to the right by another share of a pixel. It shows, at the cell's second
-/// pixel across and down, how far its middle lies from that pixel's centre, in pixels.
+/// Draws one triangle into each cell of four by four pixels, each moved to the right by another fraction of a
+/// pixel. At the cell's second pixel across and down, it writes the distance of its middle from that pixel's
+/// centre, in pixels.
 const MOVED: &str = "
 struct Varying {
     @builtin(position) clip: vec4<f32>,
@@ -89,9 +90,9 @@ struct Numbers<'a> {
     label: &'static str,
     wgsl: &'a str,
     bound: (&'a wgpu::BindGroupLayout, &'a wgpu::BindGroup),
-    /// Bytes of the vertices, if the picture is drawn by points, and their number.
+    /// Bytes of the vertices and their number, if the picture is drawn by points.
     points: Option<(&'a [u8], u32)>,
-    /// Triangles without vertex buffers, if it is not.
+    /// Number of triangles without vertex buffers, if it is not.
     triangles: u32,
     size: [u32; 2],
 }
@@ -176,7 +177,7 @@ impl Numbers<'_> {
     }
 }
 
-/// Returns the look-up's shadow factors at points, by its WGSL.
+/// Returns the shadow factors at points, computed by the look-up's WGSL.
 pub(super) async fn factors(gpu: &Gpu, map: &ShadowMap, points: &[Point]) -> Result<Vec<f32>> {
     let count = points.len() as u32;
     let rows = count.div_ceil(ROW).max(1);
@@ -197,8 +198,8 @@ pub(super) async fn factors(gpu: &Gpu, map: &ShadowMap, points: &[Point]) -> Res
     Ok(factors)
 }
 
-/// Returns the depths that the maps store, as the look-up finds them: without the texel offset of maps that are stored
-/// shifted.
+/// Returns the depths that the maps store, as the look-up finds them: without the texel offset of maps that
+/// are stored with a shift.
 pub(super) async fn texels(gpu: &Gpu, map: &ShadowMap) -> Result<Vec<Texels>> {
     let descriptor = map.descriptor();
     let [width, height] = descriptor.resolution;
@@ -219,7 +220,7 @@ pub(super) async fn texels(gpu: &Gpu, map: &ShadowMap) -> Result<Vec<Texels>> {
     Ok(maps.map(|depths| Texels { width, depths: depths.to_vec() }).collect())
 }
 
-/// Returns the values of a depth buffer of one sample a pixel. OpenGL's shaders cannot load them.
+/// Returns the values of a depth buffer with one sample per pixel. OpenGL's shaders cannot load them.
 pub(super) async fn depths(gpu: &Gpu, view: &wgpu::TextureView) -> Result<Depths> {
     let size = [view.texture().width(), view.texture().height()];
     let sample_type = wgpu::TextureSampleType::Depth;
@@ -236,8 +237,8 @@ pub(super) async fn depths(gpu: &Gpu, view: &wgpu::TextureView) -> Result<Depths
 const RANGE: f32 = 0.5;
 const PARTS: u32 = 512;
 
-/// Returns the number of steps in a pixel to which the device rounds corners of triangles, at most 1,024. Direct3D guarantees 256,
-/// Vulkan 16.
+/// Returns the number of steps per pixel to which the device rounds corners of triangles, at most 1,024.
+/// Direct3D guarantees 256, Vulkan 16.
 pub(super) async fn steps_in_a_pixel(gpu: &Gpu) -> Result<u32> {
     // Powers of two keep the corners exact.
     let size @ [width, height] = [64, 256];
@@ -254,7 +255,7 @@ pub(super) async fn steps_in_a_pixel(gpu: &Gpu) -> Result<u32> {
     let at = |cell: u32| numbers[((cell / columns * 4 + 1) * width + cell % columns * 4 + 1) as usize];
     let mut shown: Vec<f32> = (0..=PARTS).map(at).collect();
     shown.sort_by(f32::total_cmp);
-    // Numbers that differ by less than half of the finest step differ by the rounding of f32.
+    // Numbers closer than half of the finest step differ only by f32 rounding.
     let finest = RANGE / PARTS as f32;
     let steps = shown.windows(2).filter(|pair| pair[1] - pair[0] > 0.5 * finest).count();
     Ok((steps as f32 / RANGE) as u32)

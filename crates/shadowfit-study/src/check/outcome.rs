@@ -1,24 +1,24 @@
-//! How a check ends.
+//! Results of a check.
 
 use core::fmt;
 
-/// The end of a check, with its result in a sentence.
+/// Result of a check, with a sentence about it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Outcome {
     Passed(String),
     Failed(String),
-    /// The device cannot do it, for this reason.
+    /// The device cannot run the check, for this reason.
     Unavailable(String),
 }
 
 impl Outcome {
-    /// Passed or failed, with a result.
+    /// Returns passed or failed, with a sentence.
     pub(super) fn of(is_within: bool, found: String) -> Self {
         if is_within { Self::Passed(found) } else { Self::Failed(found) }
     }
 }
 
-/// The error of a check that somebody stopped.
+/// Error: the check was cancelled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Cancelled;
 

@@ -1,23 +1,25 @@
-//! The depths of two maps of the same casters, compared texel by texel.
+//! Texel-by-texel comparison of the depths of two maps with the same casters.
 
 /// The depths of a map, rows from the top.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Texels {
-    /// Texels of a row.
+    /// Texels per row.
     pub(super) width: u32,
     pub(super) depths: Vec<f32>,
 }
 
-/// Share of a texel by which the edges of two drawings of a triangle may lie apart: a rasteriser snaps each vertex to the
-/// nearest 1/256 of a texel (the subpixel precision of Direct3D, Metal and Vulkan's drivers), 1/512 to either side.
+/// Greatest distance between the edges of two drawings of a triangle, as a share of a texel. A rasteriser
+/// snaps each vertex to the nearest 1/256 of a texel (the subpixel precision of Direct3D, Metal and Vulkan's
+/// drivers), 1/512 to either side.
 const SNAP: f32 = 1.0 / 256.0;
 
-/// Greatest share of the texels at edges that an edge's snap may move across a texel's centre. An edge at a random place
-/// crosses a centre within [`SNAP`] to either side with this probability.
+/// Greatest share of the texels at edges for which the snap moves the edge across the texel's centre. This is
+/// the probability that an edge at a random place crosses a centre within [`SNAP`] on either side.
 const AT_EDGES: f64 = 2.0 / 256.0;
 
-/// Least bend of a texel at an edge, as a share of the difference between the least and the greatest depth around it.
-/// Planes have none, and the edge of a surface before another one bends by half of it.
+/// Smallest bend of a texel at an edge, as a share of the difference between the smallest and the greatest
+/// depth around it. A plane has no bend. The edge of a surface before another one bends by half of the
+/// difference.
 const EDGE: f32 = 1.0 / 16.0;
 
 /// Rounding of a depth of 0..=1 in f32: eight operations on terms of at most 2, each rounded by 2⁻²⁴.
@@ -30,14 +32,15 @@ pub(super) struct Difference {
     pub(super) texels: u64,
     /// Texels whose neighbours lie on several surfaces.
     pub(super) at_edges: u64,
-    /// Texels at edges that hold another one of their neighbours' surfaces.
+    /// Texels at edges that hold a neighbour's surface instead.
     pub(super) moved: u64,
-    /// Texels that hold a depth which no texel beside them has in either map.
+    /// Texels whose depth does not occur beside them in either map.
     pub(super) wrong: u64,
 }
 
 impl Difference {
-    /// Adds the differences of a map from a reference. `precision` is the greatest rounding of a stored depth, 0..=1.
+    /// Adds the differences of a map from a reference. `precision` is the greatest rounding of a stored
+    /// depth, 0..=1.
     pub(super) fn add(&mut self, map: &Texels, reference: &Texels, precision: f32) {
         let precision = precision + ROUNDING;
         for (index, (found, expected)) in map.depths.iter().zip(&reference.depths).enumerate() {
@@ -45,7 +48,7 @@ impl Difference {
             let spread = around.high - around.low;
             self.texels += 1;
             self.at_edges += u64::from(around.bend > precision + spread * EDGE);
-            // Over a plane the nine texels span twice its change from one to the next.
+            // On a plane the nine texels span twice the change between two neighbours.
             let tolerance = precision + spread * SNAP;
             if (found - expected).abs() <= tolerance {
                 continue;
@@ -54,8 +57,8 @@ impl Difference {
                 self.wrong += 1;
                 continue;
             }
-            // A caster that is thinner than a texel may lie on a centre in one of the maps alone: there the other one's
-            // depth is beside it.
+            // A caster that is thinner than a texel may cover the centre in one of the maps only. The other
+            // map's depth is then beside it.
             if around.holds(*found, tolerance) || map.around(index).holds(*expected, tolerance) {
                 self.moved += 1;
             } else {
@@ -71,7 +74,7 @@ impl Difference {
         }
     }
 
-    /// Whether snapped vertices and rounding explain all differences.
+    /// Returns whether snapped vertices and rounding explain all differences.
     pub(super) fn is_explained(&self) -> bool {
         self.wrong == 0 && self.moved as f64 <= (self.at_edges as f64 * AT_EDGES).ceil()
     }
@@ -81,7 +84,7 @@ impl Difference {
 struct Around {
     low: f32,
     high: f32,
-    /// Greatest difference of the texel from the mean of two opposite neighbours: 0 on a plane.
+    /// Greatest difference of the texel from the mean of two opposite neighbours; 0 on a plane.
     bend: f32,
 }
 
@@ -92,7 +95,7 @@ impl Around {
 }
 
 impl Texels {
-    /// The texel around an index; beyond the border the texel at it.
+    /// Returns the neighbourhood of an index. Beyond the border, the border texel repeats.
     fn around(&self, index: usize) -> Around {
         let width = self.width as usize;
         let [x, y] = [index % width, index / width];
@@ -118,7 +121,7 @@ mod tests {
 
     const WIDTH: u32 = 64;
 
-    /// A slope with a board of 20 texels before it, moved by a part of a texel.
+    /// Returns a slope with a board of 20 texels before it, moved by a fraction of a texel.
     fn map(shift: f32) -> Texels {
         let depth = |index: u32| {
             let [x, y] = [(index % WIDTH) as f32 + shift, (index / WIDTH) as f32];
@@ -156,7 +159,7 @@ mod tests {
         }
         let hole = difference(&texels, &reference);
         assert_eq!((hole.wrong, hole.moved), (1, 8), "the middle of a hole has no edge beside it");
-        // A thread on a single texel, in one of the maps and in the other.
+        // A thread on a single texel, in one of the maps and then in the other.
         texels = reference.clone();
         texels.depths[(50 * WIDTH + 50) as usize] = 0.1;
         for difference in [difference(&texels, &reference), difference(&reference, &texels)] {

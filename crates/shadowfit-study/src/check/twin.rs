@@ -1,8 +1,8 @@
-//! The look-up of `shadowfit-wgpu` on the CPU, in f64, from texels that were read back: projection, biases, choice of the
-//! map, comparisons and filters are those of its WGSL.
+//! CPU twin of `shadowfit-wgpu`'s look-up, in f64, from texels that were read back. It uses the same
+//! projection, biases, map selection, comparisons and filters as the WGSL.
 //!
-//! A comparison of two depths that rounding may turn round counts as either, so that a look-up gives a range of factors.
-//! A GPU's factor lies in it, but for the rounding of the weights.
+//! If rounding could flip a comparison of two depths, both results are allowed, so that a look-up returns a
+//! range of factors. A GPU's factor lies in this range, apart from the rounding of the weights.
 
 use core::ops::Range;
 
@@ -16,34 +16,37 @@ use shadowfit_wgpu::ShadowMapDescriptor;
 use super::numbers::Point;
 use super::texels::Texels;
 
-/// Error of texture coordinates and depths, 0..=1: a term of the projection is at most |position| / extent, about 3; the
-/// longest chain is 12 operations in f32 (2⁻²⁴ each), and a square root and a division of 2.5 units by WGSL's rules.
+/// Error of texture coordinates and depths, 0..=1. A term of the projection is at most |position| / extent,
+/// about 3. The longest chain is 12 operations in f32 (2⁻²⁴ each), and a square root and a division of 2.5
+/// ULP by WGSL's rules.
 const PROJECTION: f64 = 16.0 * 3.0 / 16_777_216.0;
 
-/// Error of a slope's tangent, relative, at cosines above [`LEAST_COSINE`]: four roundings of 2⁻²⁴ of the cosine.
+/// Relative error of a slope's tangent at cosines above [`LEAST_COSINE`]: four roundings of 2⁻²⁴ of the
+/// cosine.
 const TANGENT: f64 = 4.0 / 16_777_216.0 / LEAST_COSINE;
 
 /// Greatest error of a sine that is computed from an f32 cosine near 1: the root of four roundings of 2⁻²⁴.
 const SINE: f64 = 5e-4;
 
-/// Cosine between normal and light below which points are left out: their biases magnify rounding.
+/// Cosine between normal and light below which points are skipped, because their biases magnify rounding.
 pub(super) const LEAST_COSINE: f64 = 0.05;
 
-/// Steps in which samplers place a look-up between texels: Direct3D guarantees 8 bits, and Vulkan's and Metal's drivers
-/// have them.
+/// Steps in which samplers place a look-up between texels. Direct3D guarantees 8 bits, and drivers for Vulkan
+/// and Metal provide them.
 const SAMPLER: f64 = 1.0 / 256.0;
 
-/// How far from where a map's reach begins points are left out, in texels: rounding decides there which maps they read.
+/// Distance from the border of a map's reach within which points are skipped, in texels. Rounding decides
+/// there which maps they read.
 const BORDER: f64 = 0.01;
 
-/// The maps of a frame as the look-up finds them.
+/// The maps of a frame, as input of the look-up.
 pub(super) struct Twin<'a> {
     pub(super) descriptor: &'a ShadowMapDescriptor,
-    /// Relative to the origin of the points.
+    /// Maps relative to the origin of the points.
     pub(super) maps: &'a [FittedMap],
     /// The depths of each map.
     pub(super) texels: &'a [Texels],
-    /// Greatest rounding of a stored depth that differs between these texels and those of the GPU's look-up.
+    /// Greatest difference in the rounding of a stored depth between these texels and the GPU's look-up.
     pub(super) precision: f64,
 }
 
@@ -51,27 +54,28 @@ pub(super) struct Twin<'a> {
 struct Projected<'a> {
     texels: &'a Texels,
     size: DVec2,
-    /// Place, in texels from the left and from the top, and its error.
+    /// Position in texels from the left and from the top, and its error.
     at: DVec2,
     at_error: f64,
     /// Depth with its bias, and its error.
     depth: f64,
     depth_error: f64,
-    /// Change of the plane's depth over a texel each way.
+    /// Change of the plane's depth per texel along each axis.
     gradient: DVec2,
 }
 
-/// One look-up of a filter: its place in texels, and its weight.
+/// One look-up of a filter: its position in texels, and its weight.
 type LookUp = (DVec2, f64);
 
 impl Twin<'_> {
-    /// Greatest rounding of a factor's weights: a sampler rounds the place of each look-up along both axes. Point filters
-    /// weigh nothing.
+    /// Returns the greatest rounding of a factor's weights: a sampler rounds the position of each look-up
+    /// along both axes. Point filters have no weights.
     pub(super) fn weight_error(&self) -> f64 {
         if self.descriptor.filter == FilterKind::Point { 1e-6 } else { 2.0 * SAMPLER }
     }
 
-    /// Returns the range in which the factor at a point lies; `None` where rounding decides which maps it reads.
+    /// Returns the allowed range of the factor at a point. `None` if rounding decides which maps the point
+    /// reads.
     pub(super) fn factor(&self, point: &Point) -> Option<Range<f64>> {
         let position = Vec3::from(point.position).as_dvec3();
         let normal = Vec3::from(point.normal).as_dvec3();
@@ -96,14 +100,14 @@ impl Twin<'_> {
         let first = self.read(read.map, position, normal);
         let Some(blend) = read.blend else { return Some(first) };
         let second = self.read(blend.map, position, normal);
-        // The weight falls with the free texels, which are as exact as a place in the map.
+        // The weight depends on the texels to the border, which are as exact as the position in the map.
         let size = self.maps[read.map].projection.resolution.as_dvec2().max_element();
         let error = PROJECTION * size / f64::from(width);
         let mix = |first: f64, second: f64| first + (second - first) * blend.weight;
         Some(mix(first.start, second.start) - error..mix(first.end, second.end) + error)
     }
 
-    /// The range of a map's factor at a point.
+    /// Returns the range of a map's factor at a point.
     fn read(&self, map: usize, position: DVec3, normal: DVec3) -> Range<f64> {
         let point = self.project(map, position, normal);
         let FittedMap { projection, .. } = &self.maps[map];
@@ -118,7 +122,7 @@ impl Twin<'_> {
         range
     }
 
-    /// Where a point is looked up.
+    /// Projects a point into a map.
     fn project(&self, map: usize, position: DVec3, normal: DVec3) -> Projected<'_> {
         let FittedMap { projection, bias, .. } = &self.maps[map];
         let size = projection.resolution.as_dvec2();
@@ -144,7 +148,7 @@ impl Twin<'_> {
         Projected { texels: &self.texels[map], size, at: uv.truncate() * size, at_error, depth, depth_error, gradient }
     }
 
-    /// The range of one look-up: the nearest texel, or the four nearest weighted bilinearly.
+    /// Returns the range of one look-up: the nearest texel, or the four nearest weighted bilinearly.
     fn look_up(&self, point: &Projected<'_>, at: DVec2, depth: f64) -> Range<f64> {
         if self.descriptor.filter != FilterKind::Point {
             let corner = (at - 0.5).floor();
@@ -167,14 +171,14 @@ impl Twin<'_> {
         range
     }
 
-    /// The range of a comparison with a texel, beyond the border with the texel at it.
+    /// Returns the range of a comparison with a texel. Beyond the border, the border texel repeats.
     fn compare(&self, point: &Projected<'_>, texel: DVec2, depth: f64) -> Range<f64> {
         let [x, y] = texel.clamp(DVec2::ZERO, point.size - 1.0).to_array().map(|side| side as u32);
         let stored = f64::from(point.texels.depths[(y * point.texels.width + x) as usize]);
         let is_reversed = self.descriptor.depth == DepthConvention::Reversed;
         let nearer = if is_reversed { depth - stored } else { stored - depth };
         let is_empty = stored == if is_reversed { 0.0 } else { 1.0 };
-        // Depths are held within 0..=1, so that nothing lies behind an empty texel.
+        // Depths are clamped to 0..=1, so no point lies behind an empty texel.
         if is_empty || nearer > point.depth_error {
             1.0..1.0
         } else if nearer < -point.depth_error {
@@ -185,16 +189,16 @@ impl Twin<'_> {
     }
 }
 
-/// Texture coordinates and depth of a position relative to the map's origin.
+/// Returns texture coordinates and depth of a position relative to the map's origin.
 fn uv(map: &FittedMap, position: DVec3) -> DVec3 {
     map.projection.uv_from_world.as_dmat4().transform_point3(position)
 }
 
-/// The look-ups of a filter around a place.
+/// Returns the look-ups of a filter around a position.
 fn look_ups(descriptor: &ShadowMapDescriptor, at: DVec2, projection: &shadowfit::LightProjection) -> Vec<LookUp> {
     let taps = match descriptor.filter {
         FilterKind::Point => return vec![(at, 1.0)],
-        // Tents reach as many texels as they have pairs; that of one is a single look-up.
+        // A tent's radius in texels is its number of pairs. A tent of one pair is a single look-up.
         tent if !tent.is_soft() => return self::tent(at, tent.filter_radius() as u32),
         FilterKind::Vogel8 => 8,
         FilterKind::Vogel32 => 32,
@@ -204,22 +208,23 @@ fn look_ups(descriptor: &ShadowMapDescriptor, at: DVec2, projection: &shadowfit:
     (0..taps).map(|index| (at + radii * in_disc(index, taps), 1.0 / f64::from(taps))).collect()
 }
 
-/// A place in the unit disc (H. Vogel, "A better way to construct the sunflower head", 1979).
+/// Returns a point in the unit disc (H. Vogel, "A better way to construct the sunflower head", 1979).
 fn in_disc(index: u32, count: u32) -> DVec2 {
     let golden = core::f64::consts::PI * (3.0 - 5.0_f64.sqrt());
     DVec2::from_angle(f64::from(index) * golden) * ((f64::from(index) + 0.5) / f64::from(count)).sqrt()
 }
 
-/// The look-ups of a tent of `pairs` between pairs of texels each way, whose bilinear weights give the tent (after
-/// I. Castano, "Shadow mapping summary", 2013).
+/// Returns the look-ups of a tent filter of `pairs` × `pairs` look-ups. Each lies between two pairs of
+/// texels, and its bilinear weights form the tent (after I. Castano, "Shadow mapping summary", 2013).
 fn tent(at: DVec2, pairs: u32) -> Vec<LookUp> {
     let [columns, rows] = [0, 1].map(|axis| tent_along(at[axis], pairs));
     let row = |(y, b): (f64, f64)| columns.iter().map(move |(x, a)| (DVec2::new(*x, y), a * b)).collect::<Vec<_>>();
     rows.into_iter().flat_map(row).collect()
 }
 
-/// Places and weights of a tent's look-ups along an axis, from its definition: texel i has the sum of the bilinear weights
-/// of 2 · pairs - 1 look-ups one texel apart, weighted 1, 2, ..., pairs, ..., 2, 1, and each pair of texels is one look-up.
+/// Returns positions and weights of a tent's look-ups along an axis, from its definition: texel i has the sum
+/// of the bilinear weights of 2 · pairs - 1 look-ups one texel apart, weighted 1, 2, ..., pairs, ..., 2, 1,
+/// and each pair of texels is one look-up.
 fn tent_along(at: f64, pairs: u32) -> Vec<(f64, f64)> {
     let base = (at - 0.5).floor();
     let t = at - 0.5 - base;
@@ -242,7 +247,7 @@ mod tests {
 
     #[test]
     fn tents_have_the_places_and_weights_of_the_shaders() {
-        // filter_tent_5x5.wgsl.
+        // As in filter_tent_5x5.wgsl.
         for t in [0.0, 0.25, 0.7] {
             let found = tent_along(7.5 + t, 3);
             let (w0, w2) = (3.0 - 2.0 * t, 1.0 + 2.0 * t);

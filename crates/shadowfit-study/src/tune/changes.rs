@@ -1,4 +1,4 @@
-//! The changes that a search tries, one at a time, in rounds: those that matter most come first.
+//! The changes that a search tries, one at a time, in rounds. The most effective ones come first.
 
 use shadowfit::settings::{BiasSettings, FilterKind, Hysteresis, RectangleKind, SplitScheme, Stabilise};
 use shadowfit::{Maps, Technique};
@@ -18,17 +18,17 @@ impl Change {
         Self { what: what.into(), apply: Box::new(apply) }
     }
 
-    /// A change of the maps alone.
+    /// Creates a change of the maps only.
     fn to_maps(what: impl Into<String>, change: impl Fn(Maps) -> Maps + 'static) -> Self {
         Self::new(what, move |technique| technique.maps = change(technique.maps))
     }
 }
 
-/// The changes that are tried on a technique, round by round.
+/// Returns the changes to try on a technique, round by round.
 pub(super) fn rounds(start: &Technique, scope: TuneScope) -> Vec<Vec<Change>> {
     match scope {
         TuneScope::Everything => everything(start.maps.count()),
-        // A soft filter is chosen for its looks.
+        // A soft filter was chosen for its looks, so it stays.
         TuneScope::BiasAndFilter if start.filter.is_soft() => vec![biases(), fine_biases()],
         TuneScope::BiasAndFilter => vec![biases(), filters(), fine_biases(), filters()],
     }
@@ -44,7 +44,8 @@ fn everything(count: u32) -> Vec<Vec<Change>> {
     rounds
 }
 
-/// The options of a choice in the table of parameters, each with the technique that it makes of another one.
+/// Returns the options of a choice in the parameter table, each with a function that applies it to a
+/// technique.
 fn options(id: &str) -> impl DoubleEndedIterator<Item = (String, impl Fn(Technique) -> Technique + Copy + 'static)> {
     let row = parameter(id).expect("a row of the table");
     let Kind::Choice(options) = row.kind else { unreachable!("{id} is a choice") };
@@ -58,7 +59,7 @@ fn options(id: &str) -> impl DoubleEndedIterator<Item = (String, impl Fn(Techniq
     })
 }
 
-/// All fits, the best ones last, but the one that must be as its source has it.
+/// Returns all fits, the best ones last, except fits that must match their source exactly.
 fn fits() -> Vec<Change> {
     let all = options("fit.kind").rev();
     all.filter(|(_, with_fit)| !with_fit(Technique::default()).maps.are_exact())
@@ -79,8 +80,8 @@ fn biases() -> Vec<Change> {
     ]
 }
 
-/// Filters whose widths are numbers of texels, each with the bias of the present kind that it needs. The truth has a
-/// hard sun, so soft filters only add noise.
+/// Returns filters whose widths are in texels, each with the bias that it needs, of the current kind. The
+/// truth has a hard sun, so soft filters would only add noise.
 fn filters() -> Vec<Change> {
     let all = options("map.filter").map(|(what, with_filter)| (what, with_filter(Technique::default()).filter));
     let change = |(what, filter): (String, FilterKind)| {
@@ -104,7 +105,7 @@ fn splits() -> Vec<Change> {
         ("practical splits, 0.8", SplitScheme::Practical(0.8)),
         ("logarithmic splits", SplitScheme::Logarithmic),
         ("splits from the boxes", SplitScheme::FromBoxes),
-        ("splits from what the frame before showed", SplitScheme::FromHistogram),
+        ("splits from the visible demand", SplitScheme::FromHistogram),
     ];
     let change = |(what, splits)| {
         Change::to_maps(what, move |maps| match maps {
@@ -115,7 +116,7 @@ fn splits() -> Vec<Change> {
     schemes.into_iter().map(change).collect()
 }
 
-/// A number of maps in words.
+/// Returns a number of maps in words.
 pub(super) fn maps(count: u32) -> String {
     if count == 1 { "1 map".to_owned() } else { format!("{count} maps") }
 }
@@ -129,7 +130,7 @@ fn counts(most: u32) -> Vec<Change> {
 fn stillness() -> Vec<Change> {
     let held = Hysteresis::default();
     let modes = [
-        ("maps fitted anew in each frame", Stabilise::Off),
+        ("maps fitted independently in each frame", Stabilise::Off),
         ("maps on a grid of whole texels", Stabilise::Snap { max_oversize: held.max_oversize }),
         ("maps held from frame to frame", Stabilise::Hysteresis(held)),
         ("maps held longer", Stabilise::Hysteresis(held.with_max_oversize(3.0))),
@@ -158,7 +159,7 @@ fn rectangles() -> Vec<Change> {
     kinds.into_iter().map(change).collect()
 }
 
-/// Small moves away from the bias that is provably enough.
+/// Returns small changes from the bias that is provably sufficient.
 fn fine_biases() -> Vec<Change> {
     let scaled = |what: &str, scale: f32| {
         Change::new(what, move |technique: &mut Technique| {
@@ -180,12 +181,12 @@ mod tests {
 
     use super::*;
 
-    /// What cascades have already.
+    /// Options that cascades already have.
     const OF_SLICES: [&str; 5] = [
         "Fit: Focused on the scene",
         "the automatic bias",
         "Filter: PCF 5×5",
-        "splits from what the frame before showed",
+        "splits from the visible demand",
         "maps held from frame to frame",
     ];
 

@@ -1,4 +1,5 @@
-//! How a point is looked up in its map: where, with which depth, and the depths that rays find in the texels around it.
+//! The look-up of a point in its map: its position, the compared depth, and the depths that rays find in the
+//! texels around it.
 //!
 //! ```text
 //!   near plane ──────┬───────┬───────┬─────  depths are metres from here, along the light
@@ -17,30 +18,31 @@ use shadowfit_wgpu::ShadowMapDescriptor;
 
 use super::StoredTexels;
 
-/// Distance before the near plane at which rays begin that look for casters with clamped depth, in metres: farther than
-/// any scene reaches whose rays are exact.
+/// Distance before the near plane at which rays start to look for casters with clamped depth, in metres.
+/// Scenes with exact rays are never larger.
 const BEFORE_NEAR: f64 = 1e4;
-/// Greatest reach of the filter that is followed, in texels each way.
+/// Greatest reach of the filter that is followed, in texels along each axis.
 const MOST_TEXELS: f64 = 32.0;
 
-/// A point's look-up in a map. Positions are relative to the origin of the rays, in metres; depths are metres from the
-/// near plane along the light.
+/// A point's look-up in a map. Positions are relative to the origin of the rays, in metres. Depths are in
+/// metres from the near plane along the light.
 pub(super) struct LookUp<'a> {
     pub(super) fit: &'a LightProjection,
-    /// Where it is looked up, in texels from the left and from the top.
+    /// Position of the look-up, in texels from the left and from the top.
     pub(super) texel: DVec2,
     /// Depth of the point itself.
     pub(super) surface: f64,
-    /// Depth that is compared.
+    /// Compared depth.
     pub(super) compared: f64,
-    /// How far the look-up is moved along the normal.
+    /// Offset of the look-up along the normal.
     pub(super) offset: f64,
-    /// Change of the compared depth for a texel to the right and for one down.
+    /// Change of the compared depth for a texel to the right and for a texel down.
     slope: DVec2,
-    /// Where on the near plane the look-up lies, and the way from there for a texel to the right and for one down.
+    /// Position of the look-up on the near plane, and the steps from there for a texel to the right and for a
+    /// texel down.
     near: DVec3,
     steps: [DVec3; 2],
-    /// Texels each way that the filter reads.
+    /// Reach of the filter, in texels along each axis.
     reach: f64,
     depth_clamp: bool,
 }
@@ -48,25 +50,25 @@ pub(super) struct LookUp<'a> {
 /// A texel that the filter reads.
 #[derive(Clone, Copy)]
 pub(super) struct Tap {
-    /// From the look-up to the texel's centre, in texels to the right and down.
+    /// Offset of the texel's centre from the look-up, in texels to the right and down.
     pub(super) away: DVec2,
-    /// Depth that it stores; `None` where it stores nothing.
+    /// Stored depth; `None` if the texel is empty.
     pub(super) stored: Option<f64>,
-    /// The triangle that it stores, if rays find it.
+    /// Triangle stored in the texel, if rays find it.
     pub(super) triangle: Option<u32>,
-    /// Depth that is compared with it.
+    /// Depth that is compared with the stored one.
     pub(super) compared: f64,
 }
 
 impl Tap {
-    /// Whether the comparison says shadow.
+    /// Returns whether the comparison results in shadow.
     pub(super) fn is_dark(&self) -> bool {
         self.stored.is_some_and(|stored| stored < self.compared)
     }
 }
 
 impl<'a> LookUp<'a> {
-    /// `None` where the bias makes no sense on the point's plane.
+    /// Computes the look-up. `None` if the bias is invalid on the point's plane.
     pub(super) fn new(
         map: &'a FittedMap,
         measured: &MeasuredMap,
@@ -97,22 +99,22 @@ impl<'a> LookUp<'a> {
         })
     }
 
-    /// By how much the bias moves the comparison toward the light, in metres.
+    /// Returns the distance by which the bias moves the comparison toward the light, in metres.
     pub(super) fn bias(&self) -> f64 {
         self.surface - self.compared
     }
 
-    /// The greater side of a texel, in metres.
+    /// Returns the longer side of a texel, in metres.
     pub(super) fn texel_width(&self) -> f64 {
         f64::from(self.fit.texel_size.max_element())
     }
 
-    /// The texel in which the look-up lies, with the depth that it stores: read back, or found by rays.
+    /// Returns the texel that contains the look-up, with its depth, read back or found by rays.
     pub(super) fn centre(&self, tracer: &Tracer, stored: Option<&StoredTexels>) -> Tap {
         self.tap(tracer, stored, self.texel.floor())
     }
 
-    /// All texels whose centres lie within the filter's reach.
+    /// Returns all texels whose centres lie within the filter's reach.
     pub(super) fn taps(&self, tracer: &Tracer, stored: Option<&StoredTexels>) -> Vec<Tap> {
         let first = (self.texel - self.reach - 0.5).ceil().max(DVec2::ZERO);
         let last = (self.texel + self.reach - 0.5).floor().min(self.fit.resolution.as_dvec2() - 1.0);
@@ -135,7 +137,7 @@ impl<'a> LookUp<'a> {
         }
     }
 
-    /// Depth and triangle that a ray along the light meets first.
+    /// Returns depth and triangle of the first hit of a ray along the light.
     fn met(&self, tracer: &Tracer, away: DVec2) -> Option<(f64, u32)> {
         let before = if self.depth_clamp { BEFORE_NEAR } else { 0.0 };
         let direction = self.fit.direction.as_dvec3();
@@ -145,13 +147,13 @@ impl<'a> LookUp<'a> {
         (depth <= f64::from(self.fit.depth_range)).then_some((depth, hit.triangle))
     }
 
-    /// Metres from the near plane of a stored depth.
+    /// Converts a stored depth to metres from the near plane.
     fn metres(&self, depth: f32) -> f64 {
         let from_near = if self.fit.depth == DepthConvention::Reversed { 1.0 - depth } else { depth };
         f64::from(from_near) * f64::from(self.fit.depth_range)
     }
 
-    /// The stored depth of metres from the near plane; that of a cleared map for `None`.
+    /// Converts metres from the near plane to a stored depth; `None` to the depth of a cleared map.
     pub(super) fn depth(&self, metres: Option<f64>) -> f32 {
         let from_near = metres.map_or(1.0, |metres| metres / f64::from(self.fit.depth_range)) as f32;
         if self.fit.depth == DepthConvention::Reversed { 1.0 - from_near } else { from_near }

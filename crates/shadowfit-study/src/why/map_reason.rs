@@ -1,4 +1,4 @@
-//! Which map a point reads, and why, in words.
+//! The map that a point reads, and the reason in words.
 
 use glam::{DVec2, DVec3};
 use shadowfit::selection::MapRead;
@@ -8,7 +8,8 @@ use super::At;
 use super::words::{count, length, number, percent, place};
 use crate::maps::NO_END;
 
-/// "map 2 of 4: the finest that holds this point; map 1 ends 3.1 m to the left of it".
+/// Returns a sentence like "map 2 of 4: the finest that holds this point; map 1 ends 3.1 m to the left of
+/// it".
 pub(super) fn map_reason(at: &At<'_>) -> String {
     let all = at.maps.maps.len();
     let Some(read) = at.read else { return no_map(at) };
@@ -73,7 +74,7 @@ fn by_view_depth(at: &At<'_>, main: usize) -> String {
         }
         (Some((begin, map)), None) => format!("view depth {here} lies beyond {}, where map {map} ends", length(begin)),
         (None, Some(end)) => format!("view depth {here} lies before {}, where it ends", length(end)),
-        (None, None) => "it serves every view depth".to_owned(),
+        (None, None) => "it covers every view depth".to_owned(),
     }
 }
 
@@ -84,7 +85,7 @@ fn blended(read: &MapRead) -> String {
     format!("; blended with map {}, which counts {} here", other + 1, percent(weight))
 }
 
-/// Why a point does not read a map alone: "map 1 ends 3.1 m to the left of it".
+/// Returns why a point does not read a map alone, like "map 1 ends 3.1 m to the left of it".
 pub(super) fn miss(at: &At<'_>, map: usize) -> String {
     let (number_of, fit) = (map + 1, &at.input.maps[map].projection);
     let measured = &at.maps.maps[map];
@@ -111,7 +112,8 @@ fn texels_to_edge(at: &At<'_>, map: usize) -> f64 {
     measured.texels_to_edge(&measured.project(at.point.position))
 }
 
-/// The way from a point to the nearest side of a map, across the light, in metres; zero within the sides.
+/// Returns the vector from a point to the nearest side of a map, across the light, in metres; zero within the
+/// sides.
 pub(super) fn way_beside(at: &At<'_>, map: usize, point: DVec3) -> DVec3 {
     let (measured, fit) = (&at.maps.maps[map], &at.input.maps[map].projection);
     let texel = measured.project(point).texel;
@@ -120,7 +122,7 @@ pub(super) fn way_beside(at: &At<'_>, map: usize, point: DVec3) -> DVec3 {
     x * (way.x * f64::from(fit.texel_size.x)) - y * (way.y * f64::from(fit.texel_size.y))
 }
 
-/// How far the point is from a map, in metres, across the light or along it.
+/// Returns the distance of the point from a map, in metres, across the light or along it.
 fn beyond(at: &At<'_>, map: usize) -> f64 {
     let depth = at.maps.maps[map].project(at.point.position).depth;
     let along = (depth - depth.clamp(0.0, 1.0)).abs() * f64::from(at.input.maps[map].projection.depth_range);

@@ -1,5 +1,5 @@
-//! Every reason, in a court of a few things whose distances are known: the picture's middle pixel shows the point that is
-//! asked about, and the light falls straight down unless a test says otherwise.
+//! Every reason, in a court of a few objects with known distances. The picture's middle pixel shows the
+//! explained point. The light falls straight down unless a test says otherwise.
 
 use glam::dcamera::rh::{proj::directx::orthographic, view::look_to_mat4};
 use shadowfit::selection::DepthRange;
@@ -13,7 +13,7 @@ const SIZE: [u32; 2] = [101, 101];
 /// Depth range of the maps, in metres.
 const RANGE: f64 = 20.0;
 
-/// A court, a view of one of its points, and the maps of it.
+/// A court, a view of one of its points, and maps of the court.
 struct Court {
     things: Vec<(&'static str, Vec<[Vec3; 3]>)>,
     target: DVec3,
@@ -29,14 +29,14 @@ struct Court {
     stored: Option<StoredTexels>,
 }
 
-/// A rectangle at a height, between two corners (x, z).
+/// Returns a rectangle at a height, between two corners (x, z).
 fn level(height: f32, from: [f32; 2], to: [f32; 2]) -> Vec<[Vec3; 3]> {
     let [a, b, c, d] =
         [[from[0], from[1]], [from[0], to[1]], [to[0], to[1]], [to[0], from[1]]].map(|[x, z]| Vec3::new(x, height, z));
     vec![[a, b, c], [a, c, d]]
 }
 
-/// A block that stands on the floor.
+/// Returns a block on the floor.
 fn block(from: [f32; 2], to: [f32; 2], height: f32) -> Vec<[Vec3; 3]> {
     let side = |a: [f32; 2], b: [f32; 2]| {
         let [a, b] = [a, b].map(|[x, z]| Vec3::new(x, 0.0, z));
@@ -48,7 +48,8 @@ fn block(from: [f32; 2], to: [f32; 2], height: f32) -> Vec<[Vec3; 3]> {
     sides.chain(level(height, from, to)).collect()
 }
 
-/// A square map of `texels` a side around `centre`, whose near plane lies `before` metres before it.
+/// Returns a square map of `texels` per side around `centre`, whose near plane lies `before` metres before
+/// it.
 fn map(centre: DVec3, direction: Vec3, width: f64, before: f64, texels: u32) -> FittedMap {
     let (travel, half) = (direction.as_dvec3(), width * 0.5);
     let light_from_world = look_to_mat4(centre - travel * before, travel, DVec3::NEG_Z);
@@ -63,7 +64,7 @@ fn map(centre: DVec3, direction: Vec3, width: f64, before: f64, texels: u32) -> 
     FittedMap::new(fit.expect("an orthographic map"), constant(1e-4))
 }
 
-/// One map of decimetre texels that holds everything up to 10 m over the floor, and one comparison.
+/// One map with texels of 10 cm that holds everything up to 10 m over the floor, and one comparison.
 impl Default for Court {
     fn default() -> Self {
         let technique = Technique::default().with_filter(FilterKind::Point);
@@ -131,7 +132,7 @@ impl Court {
         found
     }
 
-    /// Looks straight down on the target, with this many pixels to a metre.
+    /// Looks straight down on the target, with this many pixels per metre.
     fn seen_from_above(self, height: f64, pixels: f64) -> Self {
         let fov_y = 2.0 * (0.5 * f64::from(SIZE[1]) / pixels / height).atan();
         Self { eye: self.target + DVec3::Y * height, up: Vec3::NEG_Z, fov_y: fov_y as f32, ..self }
@@ -143,12 +144,12 @@ impl Court {
     }
 }
 
-/// A roof over the left half of the court.
+/// Returns a court with a roof over its left half.
 fn roof(height: f32) -> Court {
     Court { target: DVec3::new(-1.0, 0.0, 0.0), ..Court::with("roof", level(height, [-4.0, -9.0], [0.0, 9.7])) }
 }
 
-/// A constant bias, in metres.
+/// Returns a constant bias, in metres.
 fn constant(metres: f64) -> Bias {
     Bias { constant_depth: (metres / RANGE) as f32, ..Bias::default() }
 }
@@ -167,21 +168,21 @@ fn right_pixels_say_what_throws_their_shadow_or_that_nothing_does() {
     let nameless = Court { things: vec![("", roof(3.4).things.remove(0).1)], ..roof(3.4) };
     let penumbra = |x: f64| Court { target: DVec3::X * x, judging: sun, ..roof(3.4) };
     assert_reasons(vec![
-        (Court::default(), Class::Right, "lit, rightly: nothing stands between it and the sun"),
-        (roof(3.4), Class::Right, "in shadow, rightly: \"roof\", 3.4 m toward the light, throws it"),
+        (Court::default(), Class::Right, "correctly lit: nothing blocks the sun"),
+        (roof(3.4), Class::Right, "correctly in shadow: \"roof\", 3.4 m toward the light, casts it"),
         (
             Court { factor: Some(1.0), ..penumbra(0.15) },
             Class::Right,
-            "lit, rightly: 77% of the sun reaches it, past \"roof\"",
+            "correctly lit: 77% of the sun is visible past \"roof\"",
         ),
         (
             Court { factor: Some(0.0), ..penumbra(-0.15) },
             Class::Right,
-            "in shadow, rightly: \"roof\", 3.4 m toward the light, throws it, and 23% of the sun passes it",
+            "correctly in shadow: \"roof\", 3.4 m toward the light, casts it, but 23% of the sun is visible",
         ),
     ]);
     let reason = nameless.why().reason;
-    assert_eq!(reason, "in shadow, rightly: what stands 3.4 m toward the light throws it");
+    assert_eq!(reason, "correctly in shadow: an object 3.4 m toward the light casts it");
 }
 
 #[test]
@@ -192,7 +193,7 @@ fn what_is_turned_away_is_not_judged() {
         ..Court::with("wall", block([-2.0, -1.0], [2.0, 1.0], 2.0))
     };
     let why = Court { direction: Vec3::new(0.0, -0.8, 0.6), ..wall }.why();
-    assert_eq!((why.class, why.reason.as_str()), (Class::NotJudged, "turned away from the sun"));
+    assert_eq!((why.class, why.reason.as_str()), (Class::NotJudged, "facing away from the sun"));
     assert_eq!((why.texel, why.compared, why.factor), (None, None, None));
 }
 
@@ -200,7 +201,7 @@ fn what_is_turned_away_is_not_judged() {
 fn holes_say_how_far_the_map_misses_the_occluder() {
     let low = |top: f64| vec![map(DVec3::ZERO, Vec3::NEG_Y, 10.0, top, 100)];
     let aslant = Vec3::new(1.0, -1.0, 0.0).normalize();
-    // The map was made for another light, in which the roof stands 2 m aside.
+    // The map was fitted to another light, in which the roof is 2 m aside.
     let turned = vec![map(DVec3::new(-1.0, 0.0, 0.0), aslant, 1.2, 10.0, 100)];
     let beside = Court { maps: turned, factor: Some(1.0), ..roof(2.0 * core::f32::consts::SQRT_2) };
     let far =
@@ -209,11 +210,11 @@ fn holes_say_how_far_the_map_misses_the_occluder() {
         (
             Court { maps: low(2.0), ..roof(5.2) },
             Class::Hole,
-            "lit by mistake: its occluder, \"roof\", stands 3.2 m before the near plane of map 1",
+            "wrongly lit: its occluder, \"roof\", is 3.2 m before the near plane of map 1",
         ),
-        (beside, Class::Hole, "lit by mistake: its occluder, \"roof\", lies 1.4 m beside map 1"),
-        (far, Class::Hole, "lit by mistake: no map holds it, and so it cannot be shadowed by \"roof\""),
-        (Court { maps: Vec::new(), ..roof(3.4) }, Class::Hole, "lit by mistake: there is no map"),
+        (beside, Class::Hole, "wrongly lit: its occluder, \"roof\", is 1.4 m beside map 1"),
+        (far, Class::Hole, "wrongly lit: no map holds it, so \"roof\" cannot shadow it"),
+        (Court { maps: Vec::new(), ..roof(3.4) }, Class::Hole, "wrongly lit: there is no map"),
     ]);
 }
 
@@ -228,13 +229,13 @@ fn shadows_that_end_with_the_technique_say_where() {
         Court { descriptor: ShadowMapDescriptor { fade, ..court.descriptor }, ..court }
     };
     assert_reasons(vec![
-        (no_map, Class::Hole, "lit by mistake: at 8 m it is farther than the shadow distance of 5 m"),
+        (no_map, Class::Hole, "wrongly lit: at 8 m it is beyond the shadow distance of 5 m"),
         (
             fading([6.0, 10.0]),
             Class::FalseLight,
-            "lit by mistake: shadows fade out between 6 m and 10 m, and it is 8 m away",
+            "wrongly lit: shadows fade out between 6 m and 10 m, and it is 8 m away",
         ),
-        (fading([4.0, 5.0]), Class::FalseLight, "lit by mistake: at 8 m it is farther than the shadow distance of 5 m"),
+        (fading([4.0, 5.0]), Class::FalseLight, "wrongly lit: at 8 m it is beyond the shadow distance of 5 m"),
     ]);
 }
 
@@ -244,7 +245,7 @@ fn light_that_leaks_says_through_what() {
         Court { eye: DVec3::new(0.1, 0.003, 0.0), ..Court::with("sheet", level(0.006, [-2.0, -2.0], [2.0, 2.5])) };
     let wire = Court::with("wire", level(2.0, [-0.01, -5.0], [0.01, 5.7])).seen_from_above(0.005, 25_000.0);
     let empty = StoredTexels { texel: [40, 50], depths: [[1.0; 3]; 3] };
-    // The light falls aslant on a kerb of 5 cm, 3 cm beside the point, which the bias lifts by 4 cm.
+    // The light hits a kerb of 5 cm at an angle, 3 cm beside the point, which the bias lifts by 4 cm.
     let aslant = Vec3::new(1.0, -1.0, 0.0).normalize();
     let offset = Bias { normal_offset: 0.04 * core::f32::consts::SQRT_2, ..Bias::default() };
     let kerb = Court {
@@ -256,27 +257,28 @@ fn light_that_leaks_says_through_what() {
         (
             thin.with_bias(constant(0.011)),
             Class::FalseLight,
-            "lit by mistake: its occluder, \"sheet\", is only 6 mm in front of it, less than the bias of 11 mm",
+            "wrongly lit: its occluder, \"sheet\", is only 6 mm in front of it, less than the bias of 11 mm",
         ),
         (
             kerb.with_bias(offset),
             Class::FalseLight,
-            "lit by mistake: the bias looks it up 4 cm off its surface, where the light passes \"kerb\"",
+            "wrongly lit: the bias looks it up 4 cm off its surface, where \"kerb\" is not in the way",
         ),
         (
             wire,
             Class::FalseLight,
-            "lit by mistake: its occluder, \"wire\", lies between the centres of the texels of map 1, which are 10 cm wide",
+            "wrongly lit: its occluder, \"wire\", lies between the centres of the texels of map 1, which are 10 cm \
+             wide",
         ),
         (
             Court { stored: Some(empty), ..roof(3.4) },
             Class::FalseLight,
-            "lit by mistake: map 1 should store \"roof\", 3.4 m toward the light, and does not",
+            "wrongly lit: map 1 should store \"roof\", 3.4 m toward the light, but does not",
         ),
         (
             Court { factor: Some(1.0), ..roof(3.4) },
             Class::FalseLight,
-            "lit by mistake: map 1 holds \"roof\", 3.4 m toward the light, and the filter lets the light through",
+            "wrongly lit: map 1 holds \"roof\", 3.4 m toward the light, but the filter lets light through",
         ),
     ]);
 }
@@ -286,36 +288,37 @@ fn dark_spots_say_what_the_map_stored() {
     let range = RANGE as f32;
     let nearer = StoredTexels { texel: [50, 50], depths: [[(10.0 - 0.004) / range; 3]; 3] };
     let itself = Court { stored: Some(nearer), ..Court::default() };
-    // A ramp that falls by its length: 3 cm downhill from a texel's centre.
+    // A ramp that falls at 45 degrees, 3 cm downhill from a texel's centre.
     let corners = [[-3.0, -3.0], [-3.0, 3.3], [3.0, 3.3], [3.0, -3.0]].map(|[x, z]| Vec3::new(x, 3.0 - x, z));
     let ramp = vec![[corners[0], corners[1], corners[2]], [corners[0], corners[2], corners[3]]];
     let ramp =
         Court { target: DVec3::new(0.08, 2.92, 0.0), eye: DVec3::new(2.0, 5.0, 1.0), ..Court::with("ramp", ramp) };
-    // A block without a shadow, since the light falls along its sides; the texel beside it is mostly on it.
+    // A block without a shadow, because the light falls along its sides. The texel beside it is mostly on the
+    // block.
     let block = Court::with("block", block([-2.0, -2.0], [0.07, 2.0], 1.0));
     let crease = Court { target: DVec3::new(0.09, 0.0, 0.05), eye: DVec3::new(2.0, 1.5, 0.05), ..block };
     assert_reasons(vec![
         (
             itself.with_bias(constant(0.001)),
             Class::FalseShadow,
-            "dark by mistake: the map stored this surface itself, 4 mm nearer to the light than the point; the bias \
-             moves the comparison by 1 mm only",
+            "wrongly dark: the map stores this surface itself, 4 mm nearer to the light than the point, but the \
+             bias is only 1 mm",
         ),
         (
             ramp.with_bias(constant(0.001)),
             Class::FalseShadow,
-            "dark by mistake: the map stored this surface itself, 3 cm nearer to the light than the point; the bias \
-             moves the comparison by 1 mm only",
+            "wrongly dark: the map stores this surface itself, 3 cm nearer to the light than the point, but the \
+             bias is only 1 mm",
         ),
         (
             crease,
             Class::FalseShadow,
-            "dark by mistake: the filter reads a texel 4 cm away, which stores \"block\", 1 m nearer to the light",
+            "wrongly dark: the filter reads a texel 4 cm away, which stores \"block\", 1 m nearer to the light",
         ),
         (
             Court { factor: Some(0.0), ..Court::default() },
             Class::FalseShadow,
-            "dark by mistake: the map stores something in front of it that no ray meets, such as what stood there before",
+            "wrongly dark: the map stores something in front of it that no ray hits, such as an object that has moved",
         ),
     ]);
 }
@@ -380,7 +383,7 @@ fn the_map_by_coverage_is_the_finest_and_the_reason_says_where_the_finer_one_end
             "map 2 of 2: the finest that holds this point; map 1 ends 0.1 texels beside it, and the filter reads 0.5",
         ),
         (
-            // Two and a half texels inside, of which the filter takes a half and the blend is 8 wide.
+            // 2.5 texels from the border: the filter takes 0.5 of them, and the blend is 8 wide.
             vec![around(0.75, 2.0, 20), coarse],
             8.0,
             "map 2 of 2: it takes over near the border of map 1, which is finer and counts 25% here",
@@ -424,7 +427,7 @@ fn the_map_by_view_depth_is_that_of_its_range() {
         (4.0, &cascades[..], "map 1 of 4: view depth 4 m lies before 10 m, where it ends"),
         (41.0, &cascades, "map 3 of 4: view depth 41 m lies between 28 m and 77 m"),
         (90.0, &cascades, "map 4 of 4: view depth 90 m lies beyond 77 m, where map 3 ends"),
-        (41.0, &cascades[3..], "map 1 of 1: it serves every view depth"),
+        (41.0, &cascades[3..], "map 1 of 1: it covers every view depth"),
         (
             41.0,
             &narrow,

@@ -1,4 +1,4 @@
-//! Lengths, directions and names as people read them.
+//! Lengths, directions and names for people.
 
 use glam::DVec3;
 use shadowfit_scene::Scene;
@@ -6,36 +6,36 @@ use shadowfit_truth::PixelCamera;
 
 use crate::SceneRays;
 
-/// Units of length, how many of them make a metre, and the number above which the next one reads better.
+/// Units of length, their number per metre, and the number above which the next unit is used.
 const UNITS: [(&str, f64, f64); 5] =
     [("µm", 1e6, 100.0), ("mm", 1e3, 20.0), ("cm", 1e2, 100.0), ("m", 1.0, 1000.0), ("km", 1e-3, f64::INFINITY)];
 
-/// A length in metres, in the unit in which it reads best: 4 mm, 3.2 m.
+/// Returns a length, given in metres, in its most readable unit: 4 mm, 3.2 m.
 pub(super) fn length(metres: f64) -> String {
     let fits = |(_, per_metre, end): &&(&str, f64, f64)| (metres.abs() * per_metre).round() < *end;
     let (unit, per_metre, _) = if metres == 0.0 { &UNITS[3] } else { UNITS.iter().find(fits).unwrap_or(&UNITS[4]) };
     format!("{} {unit}", number(metres * per_metre))
 }
 
-/// A number with two digits, or as many as it has before the point.
+/// Returns a number with two digits, or with all digits before the point.
 pub(super) fn number(value: f64) -> String {
     let text = format!("{value:.*}", usize::from(value.abs() < 9.95));
     text.strip_suffix(".0").map_or(text.clone(), str::to_owned)
 }
 
-/// A number of things.
+/// Returns a number of things.
 pub(super) fn count(value: f64, thing: &str) -> String {
     let number = number(value);
     let plural = if number == "1" { "" } else { "s" };
     format!("{number} {thing}{plural}")
 }
 
-/// A share of 0..=1 in per cent.
+/// Returns a share of 0..=1 in per cent.
 pub(super) fn percent(share: f64) -> String {
     format!("{:.0}%", 100.0 * share)
 }
 
-/// Where something lies, seen by the camera: `way` leads there from a point; world axes, any length but zero.
+/// Returns the direction of `way` as seen by the camera, from a point; world axes, any length except zero.
 pub(super) fn place(camera: &PixelCamera, way: DVec3) -> &'static str {
     let words = [
         (camera.right, ["to the right of it", "to the left of it"]),
@@ -47,8 +47,8 @@ pub(super) fn place(camera: &PixelCamera, way: DVec3) -> &'static str {
     strongest.map_or("beside it", |(along, words)| words[usize::from(along < 0.0)])
 }
 
-/// The name of a triangle's object, in quotes: that of the scene's node, of its nearest ancestor that has a name, or of
-/// the mesh. `None` where nothing has a name.
+/// Returns the name of a triangle's object, in quotes: the name of the scene's node, of the mesh, or of the
+/// node's nearest ancestor with a name. `None` if none of them has a name.
 pub(super) fn name(scene: &Scene, rays: &SceneRays, triangle: u32) -> Option<String> {
     let instance = rays.instance(triangle)?;
     let instance = *scene.instances().get(instance as usize)?;

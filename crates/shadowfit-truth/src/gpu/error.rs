@@ -1,47 +1,47 @@
-//! Why a picture cannot be judged on the GPU, with what to do about it.
+//! Reasons why a picture cannot be judged on the GPU, and what to do about them.
 
 use shadowfit_rays::RayError;
 use thiserror::Error;
 
-/// Why a picture cannot be judged on the GPU.
+/// Reason why a picture cannot be judged on the GPU.
 #[derive(Clone, Debug, PartialEq, Error)]
 pub enum GpuTruthError {
     /// The tracer's alpha test is a function that only the CPU can run.
     #[error(
-        "the tracer has an alpha test, a function that only the CPU can run: give its holes as plain data, \
+        "the tracer has an alpha test, a function that only the CPU can run: pass its holes as plain data, \
          with `Tracer::with_cut_outs`"
     )]
     AlphaTest,
     /// A buffer would be larger than the device allows.
     #[error(
-        "{what} demand {bytes} bytes in one buffer, and the device allows {limit}: use fewer of them, or ask the \
-         adapter for a device with higher `max_storage_buffer_binding_size` and `max_buffer_size`"
+        "{what} need {bytes} bytes in one buffer, but the device allows {limit}: use fewer of them, or request a \
+         device with higher `max_storage_buffer_binding_size` and `max_buffer_size`"
     )]
     TooLarge {
-        /// What would be in the buffer.
+        /// Content of the buffer.
         what: &'static str,
-        /// Bytes that it needs.
+        /// Bytes that are needed.
         bytes: u64,
-        /// Bytes that one buffer may have.
+        /// Greatest size of one buffer on this device, in bytes.
         limit: u64,
     },
     /// The triangles cannot be traced on the device: it is too small for them, or too old.
     #[error(transparent)]
     Rays(#[from] RayError),
-    /// More maps than the uniform holds.
-    #[error("the picture has {0} shadow maps, and the shader reads at most 8: judge it on the CPU")]
+    /// The picture has more maps than the uniform can hold.
+    #[error("the picture has {0} shadow maps, but the shader reads at most 8: judge it on the CPU")]
     TooManyMaps(usize),
-    /// A sun with a radius needs many rays.
-    #[error("the sun has a radius, and the GPU traces hard shadows only: give `TruthLight::Sun` the radius 0")]
+    /// The sun has a radius and therefore needs many rays.
+    #[error("the sun has a radius, but the GPU traces hard shadows only: set the radius of `TruthLight::Sun` to 0")]
     SoftSun,
-    /// A light with a position, to which the shader has no rays.
+    /// The light has a position. The shader traces rays to suns only.
     #[error(
-        "the light has a position, and the GPU traces rays to suns only: judge the picture on the CPU, with `judge`"
+        "the light has a position, but the GPU traces rays to suns only: judge the picture on the CPU, with `judge`"
     )]
     PositionalLight,
-    /// The picture of triangles and the camera have different sizes.
+    /// The texture of seen triangles and the camera have different sizes.
     #[error(
-        "the texture of seen triangles has {}×{} pixels and the camera {}×{}: give the camera of that picture",
+        "the texture of seen triangles has {}×{} pixels, but the camera {}×{}: pass the camera of that picture",
         seen[0], seen[1], camera[0], camera[1]
     )]
     Size {
@@ -50,9 +50,9 @@ pub enum GpuTruthError {
         /// Size of the camera's picture, in pixels.
         camera: [u32; 2],
     },
-    /// The picture of the frame before's factors and the camera have different sizes.
+    /// The texture of the previous frame's factors and the camera have different sizes.
     #[error(
-        "the texture of the factors of the frame before has {}×{} pixels and the camera {}×{}: draw it with the camera \
+        "the texture of the previous frame's factors has {}×{} pixels, but the camera {}×{}: draw it with the camera \
          of this frame",
         before[0], before[1], camera[0], camera[1]
     )]
@@ -62,10 +62,10 @@ pub enum GpuTruthError {
         /// Size of the camera's picture, in pixels.
         camera: [u32; 2],
     },
-    /// No picture was judged before its classes were read.
+    /// The classes were read before any picture was judged.
     #[error("no picture was judged yet: call `GpuJudge::judge` and submit its encoder before reading")]
     NotJudged,
     /// The classes or their tally cannot be read back.
-    #[error("what was judged cannot be read back from the device, which was lost or ran out of memory: open it again")]
+    #[error("the judged picture cannot be read back, because the device was lost or ran out of memory: open it again")]
     Read,
 }

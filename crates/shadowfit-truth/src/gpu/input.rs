@@ -1,4 +1,4 @@
-//! A picture to judge on the GPU, and the uniform that is made of it for the shaders.
+//! A picture to judge on the GPU, and the uniform that the shaders read for it.
 
 use glam::DVec3;
 use shadowfit::selection::MapOrder;
@@ -15,35 +15,36 @@ use crate::truth::TruthSettings;
 pub struct GpuJudgeInput<'a> {
     /// Camera of the picture.
     pub camera: &'a PixelCamera,
-    /// How truth is traced; the light must be a sun with hard shadows.
+    /// How the truth is traced. The light must be a sun with hard shadows.
     pub settings: &'a TruthSettings,
     /// The maps, at most [`MAX_MAPS`].
     pub maps: &'a PictureMaps<'a>,
-    /// The maps of the frame before, whose verdicts are compared for [`GpuTally::crawl_compared`](super::GpuTally);
-    /// `None` compares nothing.
+    /// The maps of the previous frame, compared for [`GpuTally::crawl_compared`](super::GpuTally). `None`
+    /// skips the comparison.
     pub before: Option<GpuBefore<'a>>,
-    /// Where the times of the start and the end of the pass are written, if anywhere.
+    /// Timestamps of the start and the end of the pass, if wanted.
     pub timestamp_writes: Option<wgpu::ComputePassTimestampWrites<'a>>,
 }
 
-/// The maps of the frame before, and what they show at the points of this frame, as
-/// [`MapsBefore`](crate::MapsBefore) has them.
+/// The maps of the previous frame, and their factors at the points of this frame. Like
+/// [`MapsBefore`](crate::MapsBefore).
 #[derive(Clone, Copy, Debug)]
 pub struct GpuBefore<'a> {
-    /// Its maps, at most [`MAX_MAPS`], and how they were read.
+    /// The previous frame's maps, at most [`MAX_MAPS`], and how they were read.
     pub maps: &'a PictureMaps<'a>,
-    /// Its eye, world space, metres.
+    /// The previous frame's eye, world space, metres.
     pub eye: DVec3,
-    /// Its unit direction of view, world axes: view depths along it choose among maps that are read by view depth.
+    /// The previous frame's unit view direction, world axes. Selection by view depth uses view depths along
+    /// it.
     pub forward: DVec3,
-    /// An `Rg32Uint` of this frame's camera, as [`GpuJudge::judge`](super::GpuJudge::judge) takes it: the second number
-    /// has the bits of the factor that the maps of the frame before give to this frame's point. The first one is
-    /// ignored.
+    /// An `Rg32Uint` texture drawn with this frame's camera, as [`GpuJudge::judge`](super::GpuJudge::judge)
+    /// takes it. Its second channel has the bits of the factor that the previous frame's maps give to this
+    /// frame's point. The first channel is ignored.
     pub seen: &'a wgpu::TextureView,
 }
 
 impl GpuJudgeInput<'_> {
-    /// The uniform of the picture, for triangles that are stored relative to `origin`.
+    /// Creates the uniform of the picture, for triangles that are stored relative to `origin`.
     pub(crate) fn uniform(&self, origin: DVec3, triangles: u32) -> Result<JudgeUniform, GpuTruthError> {
         let Self { camera, settings, maps, before, timestamp_writes: _ } = self;
         let to_light = match settings.light {
@@ -80,7 +81,7 @@ impl GpuJudgeInput<'_> {
 }
 
 impl GpuBefore<'_> {
-    /// The uniform for points relative to this frame's `eye`.
+    /// Creates the uniform for points relative to this frame's `eye`.
     fn uniform(&self, eye: DVec3) -> Result<BeforeUniform, GpuTruthError> {
         let read = ReadMaps::new(self.maps, eye)?;
         Ok(BeforeUniform {
@@ -95,16 +96,17 @@ impl GpuBefore<'_> {
     }
 }
 
-/// Maps in the order in which points try them.
+/// Maps in the order of selection.
 struct ReadMaps {
     uniforms: [MapUniform; MAX_MAPS],
     count: u32,
-    /// Texels over which a map is blended into the next one, by coverage; `None` by view depth.
+    /// Texels over which a map is blended into the next one, if selected by coverage; `None` if selected by
+    /// view depth.
     blend: Option<f32>,
 }
 
 impl ReadMaps {
-    /// The maps for positions relative to `eye`.
+    /// Sorts the maps and makes their rows relative to `eye`.
     fn new(maps: &PictureMaps, eye: DVec3) -> Result<Self, GpuTruthError> {
         if maps.maps.len() > MAX_MAPS {
             return Err(GpuTruthError::TooManyMaps(maps.maps.len()));
@@ -140,7 +142,7 @@ fn map_uniform(map: &MeasuredMap, eye: DVec3) -> MapUniform {
     }
 }
 
-/// A length that shaders can compare: WGSL has no infinity.
+/// Clamps a length to finite values, because WGSL has no infinity.
 fn finite(value: f64) -> f32 {
     (value as f32).clamp(f32::MIN, f32::MAX)
 }

@@ -1,4 +1,4 @@
-//! The pass that judges a picture in three steps and sums it in a fourth, and the texture that it fills.
+//! The compute pass that judges a picture in three steps and sums it in a fourth, and its output texture.
 
 use shadowfit_gpu::bindings::{UNIFORM, group, layout, plain_texture, storage, uniform_buffer, written_texture};
 use shadowfit_gpu::{TexelCopy, compute_pipeline, make_at_once, wgsl_module};
@@ -12,31 +12,31 @@ use super::tally_pass::{TEXTURE, TallyInput, TallyPass};
 use super::tracer::{GpuTracer, slots_layout};
 use super::uniform::JudgeUniform;
 
-/// Bytes of a pixel between the steps: flags, pixels per texel, distance along the row.
-const PIXEL_BYTES: u64 = 12;
-/// Storage buffers that a pass binds: five of the rays, the slots of the triangles, and the pixels.
+/// Bytes per pixel of the buffer between the steps: flags, pixels per texel, distance along the row, cosine.
+const PIXEL_BYTES: u64 = 16;
+/// Storage buffers that the pass binds: five for the rays, one for the triangles' slots, one for the pixels.
 const STORAGE_BUFFERS: u32 = 7;
-/// Threads of the largest workgroup.
+/// Threads in the largest workgroup.
 const WORKGROUP_THREADS: u32 = 256;
-/// Pixels a side of a workgroup's square.
+/// Side of the square that a workgroup handles, in pixels.
 const SQUARE: u32 = 8;
-/// The texture of classes, to be written.
+/// Binding of the texture of classes, write-only.
 const CLASSES: wgpu::BindingType = written_texture(wgpu::TextureFormat::R32Uint);
 
 /// Judges pictures on the GPU.
 #[derive(Debug)]
 pub struct GpuJudge {
     layout: wgpu::BindGroupLayout,
-    /// Of the three steps, in their order.
+    /// Pipelines of the three steps, in order.
     pipelines: Vec<wgpu::ComputePipeline>,
     uniform: wgpu::Buffer,
     target: Option<Target>,
     tally: TallyPass,
-    /// Number of pictures that were recorded.
+    /// Number of pictures recorded so far.
     pictures: u64,
 }
 
-/// The buffer and the texture that have the size of the picture.
+/// The buffer and the texture whose size is the picture's.
 #[derive(Debug)]
 struct Target {
     size: [u32; 2],
@@ -46,13 +46,13 @@ struct Target {
 }
 
 impl GpuJudge {
-    /// Whether a device with these limits has enough storage buffers and threads to judge pictures.
+    /// Returns whether a device with these limits has enough storage buffers and threads to judge pictures.
     pub const fn runs_with(limits: &wgpu::Limits) -> bool {
         limits.max_storage_buffers_per_shader_stage >= STORAGE_BUFFERS
             && limits.max_compute_invocations_per_workgroup >= WORKGROUP_THREADS
     }
 
-    /// Makes the pipelines. The device must have the limits of [`Self::runs_with`].
+    /// Creates the pipelines. The device must have the limits of [`Self::runs_with`].
     pub fn new(device: &wgpu::Device) -> Self {
         let types = [UNIFORM, TEXTURE, storage(false), CLASSES];
         let layout = layout(device, "judged picture", wgpu::ShaderStages::COMPUTE, &types);
@@ -67,20 +67,22 @@ impl GpuJudge {
         Self { layout, pipelines, uniform, target: None, tally: TallyPass::new(device), pictures: 0 }
     }
 
-    /// Records the pass that judges a picture, and returns the texture that it fills (see
-    /// [`GpuPixel`]). The texture stays the same one as long as the size does. `seen` is an `Rg32Uint`
-    /// of the camera's size: the index of the tracer's triangle plus 1 (0 for the sky), and the bits
-    /// of the filtered factor, an f32.
+    /// Records the pass that judges a picture, and returns its output texture (see [`GpuPixel`]). The texture
+    /// is reused until the size changes.
     ///
-    /// The sums of the picture are recorded as well, for [`Self::take`]. A picture that is recorded while the sums of
-    /// three others are on their way is judged and not summed.
+    /// `seen` is an `Rg32Uint` texture of the camera's size. Its channels are the index of the tracer's
+    /// triangle plus 1 (0 for the sky), and the bits of the filtered factor, an f32.
     ///
-    /// Submit the encoder before the next picture is recorded, which overwrites this one.
+    /// The sums of the picture are recorded as well, for [`Self::take`]. If the sums of three earlier
+    /// pictures are still on their way back, this picture is judged but not summed.
+    ///
+    /// Submit the encoder before you record the next picture, which overwrites this one.
     ///
     /// # Errors
     ///
-    /// When the sizes of `seen` or [`GpuBefore::seen`](super::GpuBefore::seen) and the camera differ, the picture is
-    /// too large for the device, there are more than [`MAX_MAPS`](super::MAX_MAPS) maps, or the light is not a sun with hard shadows.
+    /// If the size of `seen` or [`GpuBefore::seen`](super::GpuBefore::seen) differs from the camera's, the
+    /// picture is too large for the device, there are more than [`MAX_MAPS`](super::MAX_MAPS) maps, or the
+    /// light is not a sun with hard shadows.
     pub fn judge(
         &mut self,
         device: &wgpu::Device,
@@ -130,7 +132,7 @@ impl GpuJudge {
         group(device, "judged picture", &self.layout, &resources)
     }
 
-    /// Records the three steps that judge a picture of a size.
+    /// Records the three steps that judge a picture.
     fn record_steps(
         &self,
         pass: &mut wgpu::ComputePass<'_>,
@@ -149,37 +151,38 @@ impl GpuJudge {
         }
     }
 
-    /// Number of pictures that were recorded, which is also the number of the last one.
+    /// Returns the number of pictures recorded so far, which is also the number of the last one.
     pub fn pictures(&self) -> u64 {
         self.pictures
     }
 
-    /// The sums of the newest picture that the GPU has finished, once; `None` while there is none. Never waits: called
-    /// each frame, it gives the sums of a picture a few frames back, which [`GpuTally::picture`] names.
+    /// Returns the sums of the newest picture that the GPU has finished, once. Returns `None` if there are
+    /// none. Never waits: called each frame, it returns the sums of a picture from a few frames ago, named by
+    /// [`GpuTally::picture`].
     ///
     /// # Errors
     ///
-    /// [`GpuTruthError::Read`] if the device is lost or has no memory left.
+    /// [`GpuTruthError::Read`] if the device is lost or out of memory.
     pub fn take(&mut self, device: &wgpu::Device) -> Result<Option<GpuTally>, GpuTruthError> {
         self.tally.take(device)
     }
 
-    /// The texture of the last picture's classes; `None` before the first picture.
+    /// Returns the texture of the last picture's classes; `None` before the first picture.
     pub fn classes(&self) -> Option<&wgpu::Texture> {
         self.target.as_ref().map(|target| &target.classes)
     }
 
-    /// Reads the last picture's classes back, rows from the top, and waits for the device.
+    /// Reads the last picture's classes back, rows from the top. Waits for the device.
     ///
     /// # Errors
     ///
-    /// When no picture was judged yet, or the device is lost or has no memory left.
+    /// If no picture was judged yet, or the device is lost or out of memory.
     pub fn read(&self, device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Vec<GpuPixel>, GpuTruthError> {
         let target = self.target.as_ref().ok_or(GpuTruthError::NotJudged)?;
         let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let copy = TexelCopy::record(device, &mut encoder, &target.classes, target.classes.size(), 4);
         queue.submit([encoder.finish()]);
-        // Whether it was mapped is checked below.
+        // A failed mapping is reported by `texels` below.
         copy.buffer().slice(..).map_async(wgpu::MapMode::Read, |_| ());
         device.poll(wgpu::PollType::wait_indefinitely()).map_err(|_| GpuTruthError::Read)?;
         let words = bytemuck::pod_collect_to_vec(&copy.texels().map_err(|_| GpuTruthError::Read)?);
@@ -187,7 +190,7 @@ impl GpuJudge {
     }
 }
 
-/// Refuses pictures of another size than the camera's.
+/// Returns an error if a texture's size differs from the camera's.
 fn check_sizes(seen: &wgpu::TextureView, before: &wgpu::TextureView, camera: [u32; 2]) -> Result<(), GpuTruthError> {
     let [seen, before] = [seen, before].map(|view| [view.texture().width(), view.texture().height()]);
     if seen != camera {

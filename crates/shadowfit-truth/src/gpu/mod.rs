@@ -1,10 +1,9 @@
-//! The same classes from compute passes, for pictures that are judged while they are looked at.
+//! The same classes, computed on the GPU for pictures that are judged in real time.
 //!
-//! [`GpuTracer`] holds a tracer's triangles and hierarchy, and [`GpuJudge`] fills a texture with the
-//! class of each pixel and sums the picture. Nothing has to be read back; the sums, [`GpuTally`], come
-//! back by themselves some frames later. It uses only what every WebGPU device has. The CPU's
-//! [`crate::judge()`] and [`crate::PictureTally`] are the reference; the GPU follows the same rules in
-//! f32.
+//! [`GpuTracer`] holds a tracer's triangles and hierarchy. [`GpuJudge`] fills a texture with the class of
+//! each pixel and sums the picture. No read-back by the caller is needed: the sums, [`GpuTally`], arrive some
+//! frames later. Every WebGPU device can run it. [`crate::judge()`] and [`crate::PictureTally`] on the CPU
+//! are the reference; the GPU follows the same rules in f32.
 
 mod error;
 mod input;

@@ -1,4 +1,4 @@
-//! How a pixel of the texture of classes is encoded.
+//! Encoding of a pixel in the texture of classes.
 
 use crate::class::Class;
 
@@ -12,24 +12,24 @@ use crate::class::Class;
 /// | 8 to 11 | index of the map that is read, plus 1; 0 for none |
 /// | 16 to 31 | log2 of pixels per texel along the worse axis, times 256, plus 32768; 65535 where no map is read |
 ///
-/// All bits of a pixel that is not judged are 0.
+/// If a pixel is not judged, all its bits are 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GpuPixel {
     /// Class of the pixel.
     pub class: Class,
-    /// Whether the light reaches it in truth.
+    /// Whether the light reaches the pixel in truth.
     pub is_lit: bool,
     /// Whether the pixel lies in the edge zone.
     pub is_in_edge_zone: bool,
-    /// Index of the map that is read. `None` where no map covers the point or the pixel is not judged.
+    /// Index of the map that is read. `None` if no map covers the point or the pixel is not judged.
     pub map_index: Option<u8>,
-    /// Pixels per texel along the worse axis, to 0.14%. Infinite where no map is read and from 2^127
-    /// on; not a number where the pixel is not judged.
+    /// Pixels per texel along the worse axis, to 0.14%. Infinite if no map is read and for values from 2^127
+    /// on; NaN if the pixel is not judged.
     pub pixels_per_texel: f32,
 }
 
 impl GpuPixel {
-    /// Decodes a pixel's bits. Bits that stand for no class are those of a pixel that is not judged.
+    /// Decodes a pixel's bits. Bits without a class decode to a pixel that is not judged.
     pub fn from_bits(bits: u32) -> Self {
         let class = match bits & 7 {
             1 => Class::Right,
@@ -48,8 +48,8 @@ impl GpuPixel {
         }
     }
 
-    /// Encodes a pixel as the passes do, for textures that are filled from the CPU. Indices of maps from 15 on have no
-    /// bits and count as 14.
+    /// Encodes a pixel as the passes do, for textures that are filled from the CPU. Map indices from 15 on do
+    /// not fit and are encoded as 14.
     pub fn to_bits(self) -> u32 {
         if self.class == Class::NotJudged {
             return 0;
@@ -61,25 +61,25 @@ impl GpuPixel {
     }
 }
 
-/// Greatest index of a map that the texture has bits for.
+/// Greatest map index that the texture can encode.
 const MOST_MAP_INDEX: u32 = 14;
-/// What stands for pixels per texel where no map is read.
+/// Encoding of pixels per texel if no map is read.
 const NO_OCTAVES: u16 = u16::MAX;
 
-/// Steps of an octave in the texture.
+/// Steps per octave in the texture.
 const OCTAVE: f32 = 256.0;
-/// The step that stands for one pixel per texel.
+/// Step that encodes one pixel per texel.
 const ONE: f32 = 32768.0;
-/// Octaves from here on are beyond what f32 holds.
+/// First octave that decodes to infinity, because f32 cannot hold its values.
 const MAX_OCTAVE: f32 = 127.0;
 
-/// Pixels per texel from their bits.
+/// Decodes pixels per texel.
 fn decode_octaves(bits: u16) -> f32 {
     let octaves = (f32::from(bits) - ONE) / OCTAVE;
     if octaves >= MAX_OCTAVE { f32::INFINITY } else { octaves.exp2() }
 }
 
-/// The bits of pixels per texel, which are at least 0; the bits of infinity where it is not a number.
+/// Encodes pixels per texel, which must be at least 0. NaN is encoded as infinity.
 fn encode_octaves(pixels_per_texel: f32) -> u16 {
     if pixels_per_texel.is_nan() {
         return NO_OCTAVES;

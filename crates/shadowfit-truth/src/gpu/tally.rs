@@ -1,45 +1,49 @@
-//! The sums of a picture that was judged on the GPU, and the figures that follow from them.
+//! Sums of a picture that was judged on the GPU, and the figures computed from them.
 
 use super::uniform::TallyRecord;
 use crate::class::Class;
 use crate::tally::{ClassTally, PictureFigures, PictureTally};
 
-/// Bins of an octave of pixels per texel.
+/// Bins per octave of pixels per texel.
 const BINS_PER_OCTAVE: f64 = 32.0;
-/// The bin that begins at one pixel per texel.
+/// Bin that begins at one pixel per texel.
 const ONE: f64 = TallyRecord::BINS as f64 / 2.0;
-/// Steps of the classes' texture in an octave. A step stands for the values that round to it, so that bins, of whole
-/// steps, begin half a step early.
+/// Steps per octave in the texture of classes. Each step encodes the values that round to it, and bins
+/// consist of whole steps. Bins therefore begin half a step early.
 const STEPS_PER_OCTAVE: f64 = 256.0;
 
-/// Sums over the pixels of a picture that count, as [`PictureTally`] has them: those that face the light, within the
-/// shadow distance. The pixels of all triangles count on the GPU.
+/// Sums over the counted pixels of a picture, like [`PictureTally`]: pixels that face the light within the
+/// shadow distance. The GPU counts the pixels of all triangles.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GpuTally {
-    /// Which picture it is: the number that [`GpuJudge::pictures`](super::GpuJudge::pictures) gave right after it was
-    /// recorded.
+    /// Number of the picture: the value of [`GpuJudge::pictures`](super::GpuJudge::pictures) right after it
+    /// was recorded.
     pub picture: u64,
-    /// Classes of all pixels that count, grazing ones included.
+    /// Classes of all counted pixels, including grazing ones.
     pub all: ClassTally,
-    /// Classes of those whose cosine toward the light is below 0.05.
+    /// Classes of the pixels whose cosine toward the light is below 0.05.
     pub grazing: ClassTally,
     /// Pixels that the light reaches in truth.
     pub lit: u64,
     /// Pixels in the edge zone, right or wrong.
     pub edge_zone: u64,
-    /// Sum of |factor − truth|, where truth is 0 or 1. Each pixel's is rounded to 2^-20.
+    /// Sum of |factor − truth|, where truth is 0 or 1. Each pixel's error is rounded to 2^-20.
     pub error: f64,
+    /// Sum of the cosines between the surface normal and the direction toward the light. Each pixel's is rounded to 2^-20.
+    pub light: f64,
+    /// Sum of |factor − truth| times that cosine. Each pixel's is rounded to 2^-20.
+    pub light_error: f64,
     /// Pixels that no map covers.
     pub uncovered: u64,
-    /// Numbers of pixels by pixels per texel along the worse axis, of pixels that a map covers and that are not
-    /// grazing. Bin k of the 1024 begins at 2^((k − 512) / 32 − 1/512); the first one also holds what lies below it,
-    /// the last one what lies above. An octave has 32 bins, a quarter of those of [`Histogram`](crate::Histogram).
+    /// Histogram of pixels per texel along the worse axis, over the covered pixels that are not grazing. Bin
+    /// k of 1024 begins at 2^((k − 512) / 32 − 1/512). The first and the last bin also hold all values beyond
+    /// them. An octave has 32 bins, a quarter as many as in [`Histogram`](crate::Histogram).
     pub pixels_per_texel: Vec<u64>,
-    /// Those of them with more than one pixel per texel.
+    /// Pixels in the histogram with more than one pixel per texel.
     pub undersampled: u64,
-    /// Pixels in the edge zone that were compared with the frame before, as [`crawl()`](crate::crawl()) does.
+    /// Pixels in the edge zone that were compared with the previous frame, as in [`crawl()`](crate::crawl()).
     pub crawl_compared: u64,
-    /// Those of them whose verdict differs.
+    /// Compared pixels whose verdict differs.
     pub crawl_different: u64,
 }
 
@@ -51,8 +55,9 @@ impl GpuTally {
             grazing: class_tally(&record.grazing),
             lit: record.lit.into(),
             edge_zone: record.edge_zone.into(),
-            error: (f64::from(record.error_high) * f64::exp2(32.0) + f64::from(record.error_low))
-                / f64::from(TallyRecord::ERROR_ONE),
+            error: sum(record.error_high, record.error_low),
+            light: sum(record.light_high, record.light_low),
+            light_error: sum(record.light_error_high, record.light_error_low),
             uncovered: record.uncovered.into(),
             pixels_per_texel: record.bins.map(u64::from).to_vec(),
             undersampled: record.undersampled.into(),
@@ -61,11 +66,11 @@ impl GpuTally {
         }
     }
 
-    /// The figures, as [`PictureTally::figures`] has them; `None` where no pixel was judged.
+    /// Computes the figures, like [`PictureTally::figures`]. Returns `None` if no pixel was judged.
     ///
-    /// Quantiles of pixels per texel are the middles of [bins](Self::pixels_per_texel), 1.1% from the true ones at
-    /// most; one in the last bin, from 2^16 on, is infinite. The distance of edges is not measured on the GPU: it is
-    /// `None`.
+    /// Quantiles of pixels per texel are the middles of [bins](Self::pixels_per_texel), at most 1.1% off. A
+    /// quantile in the last bin, from 2^16 on, is infinite. The GPU does not measure the distance of edges,
+    /// which is `None`.
     pub fn figures(&self) -> Option<PictureFigures> {
         let covered: u64 = self.pixels_per_texel.iter().sum();
         let sums = PictureTally {
@@ -74,6 +79,8 @@ impl GpuTally {
             grazing: self.grazing,
             edge_zone: self.edge_zone,
             error: self.error,
+            light: self.light,
+            light_error: self.light_error,
             uncovered: self.uncovered,
             crawl_compared: self.crawl_compared,
             crawl_different: self.crawl_different,
@@ -87,8 +94,8 @@ impl GpuTally {
         })
     }
 
-    /// The quantile `q`, 0..=1, of pixels per texel: the middle of the first bin at which the count reaches ceil(q n)
-    /// of the n pixels. `None` without pixels, infinite in the last bin.
+    /// Returns the quantile `q`, 0..=1, of pixels per texel: the middle of the first bin at which the count
+    /// reaches ceil(q n) of the n pixels. `None` without pixels, infinite in the last bin.
     fn quantile(&self, q: f64) -> Option<f64> {
         let covered: u64 = self.pixels_per_texel.iter().sum();
         let wanted = ((q * covered as f64).ceil() as u64).max(1);
@@ -102,7 +109,12 @@ impl GpuTally {
     }
 }
 
-/// Pixels by class; pixels that are not judged do not count.
+/// Returns a sum from its two words.
+fn sum(high: u32, low: u32) -> f64 {
+    (f64::from(high) * f64::exp2(32.0) + f64::from(low)) / f64::from(TallyRecord::ERROR_ONE)
+}
+
+/// Counts pixels by class. Pixels that are not judged do not count.
 fn class_tally(pixels: &[u32; 6]) -> ClassTally {
     let of = |class: Class| u64::from(pixels[class as usize]);
     let wrong = [Class::FalseShadow, Class::FalseLight, Class::Hole, Class::Edge];
@@ -125,6 +137,8 @@ mod tests {
             lit: 7,
             error_low: TallyRecord::ERROR_ONE / 2,
             error_high: 1,
+            light_low: TallyRecord::ERROR_ONE * 4,
+            light_error_low: TallyRecord::ERROR_ONE,
             ..TallyRecord::zeroed()
         };
         let tally = GpuTally::new(5, &record);
@@ -133,6 +147,7 @@ mod tests {
         assert_eq!(tally.error, 4096.5);
         let figures = tally.figures().expect("20 pixels");
         assert_eq!((figures.wrong, figures.grazing, figures.grazing_wrong), (50.0, 15.0, 10.0));
+        assert_eq!(figures.light_error, 25.0);
         assert_eq!((figures.pixels_per_texel, figures.undersampled, figures.crawl), (None, None, None));
     }
 

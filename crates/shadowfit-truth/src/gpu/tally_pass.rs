@@ -1,4 +1,4 @@
-//! The sums of a judged picture, and their way back to the CPU.
+//! The pass that sums a judged picture, and the read-back of the sums.
 
 use shadowfit_gpu::bindings::{UNIFORM, group, layout, storage, texture};
 use shadowfit_gpu::{ReadBackRing, compute_pipeline, wgsl_module};
@@ -8,11 +8,12 @@ use super::shader;
 use super::tally::GpuTally;
 use super::uniform::TallyRecord;
 
-/// A texture of whole numbers.
+/// Binding of a texture of unsigned integers.
 pub(super) const TEXTURE: wgpu::BindingType = texture(wgpu::TextureSampleType::Uint, false);
-/// Buffers of sums that take turns: the GPU works on one picture while another waits in line and the CPU reads a third.
+/// Number of buffers that take turns: one in use by the GPU, one waiting in the queue, and one being read by
+/// the CPU.
 const BUFFERS: usize = 3;
-/// Pixels a side of a workgroup's square.
+/// Side of the square that a workgroup sums, in pixels.
 const SQUARE: u32 = 32;
 
 /// Sums pictures on the GPU.
@@ -21,18 +22,18 @@ pub(super) struct TallyPass {
     layout: wgpu::BindGroupLayout,
     pipeline: wgpu::ComputePipeline,
     sums: wgpu::Buffer,
-    /// With the number of each picture.
+    /// Read-backs, each with the number of its picture.
     read_backs: ReadBackRing<u64>,
 }
 
-/// What is read for the sums.
+/// Input of the sums.
 pub(super) struct TallyInput<'a> {
     pub(super) size: [u32; 2],
     pub(super) uniform: &'a wgpu::Buffer,
     pub(super) seen: &'a wgpu::TextureView,
     pub(super) pixels: &'a wgpu::Buffer,
     pub(super) classes: &'a wgpu::TextureView,
-    /// Any texture of the size where no frame before is compared.
+    /// Any texture of the picture's size if no previous frame is compared.
     pub(super) seen_before: &'a wgpu::TextureView,
 }
 
@@ -48,17 +49,17 @@ impl TallyPass {
             usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC,
             mapped_at_creation: false,
         });
-        let read_backs = ReadBackRing::new(device, "tally on its way back", sums.size(), BUFFERS);
+        let read_backs = ReadBackRing::new(device, "tally read-back", sums.size(), BUFFERS);
         Self { layout, pipeline, sums, read_backs }
     }
 
-    /// Whether a buffer is free for the sums of a further picture.
+    /// Returns whether a buffer is free for the sums of another picture.
     pub(super) fn has_room(&mut self) -> bool {
         self.read_backs.free_overtaken();
         self.read_backs.free().is_some()
     }
 
-    /// Sets the sums to zero, before the pass.
+    /// Clears the sums. Call it before the pass.
     pub(super) fn clear(&self, encoder: &mut wgpu::CommandEncoder) {
         encoder.clear_buffer(&self.sums, 0, None);
     }
@@ -79,14 +80,14 @@ impl TallyPass {
         pass.dispatch_workgroups(x, y, 1);
     }
 
-    /// Records the way back of the sums of a picture, after the pass.
+    /// Records the read-back of a picture's sums. Call it after the pass.
     pub(super) fn read_back(&mut self, encoder: &mut wgpu::CommandEncoder, picture: u64) {
         self.read_backs.record(encoder, &self.sums, picture);
     }
 
-    /// The newest finished picture's sums, once.
+    /// Returns the sums of the newest finished picture, once.
     pub(super) fn take(&mut self, device: &wgpu::Device) -> Result<Option<GpuTally>, GpuTruthError> {
-        // Only looks; whether anything is finished shows in the buffers.
+        // Does not wait. The buffers show whether a read-back has finished.
         let _ = device.poll(wgpu::PollType::Poll);
         let taken = self.read_backs.take(bytemuck::pod_read_unaligned).map_err(|_| GpuTruthError::Read)?;
         Ok(taken.map(|(picture, record)| GpuTally::new(picture, &record)))

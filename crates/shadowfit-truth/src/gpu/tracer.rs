@@ -1,5 +1,5 @@
-//! A tracer's triangles, hierarchy and cut-outs in buffers: a scene of [`shadowfit_rays`] with one instance, and what
-//! finds the triangles that a picture names.
+//! A tracer's triangles, hierarchy and cut-outs in GPU buffers: a scene of [`shadowfit_rays`] with one
+//! instance, and a table to look up a picture's triangles.
 
 use glam::{Affine3A, DVec3, Vec3};
 use shadowfit_gpu::bindings::{group, layout, storage};
@@ -9,28 +9,28 @@ use super::error::GpuTruthError;
 use crate::cut_out::AlphaImage;
 use crate::tracer::Tracer;
 
-/// Label of the places' buffer, bind group and layout.
-const LABEL: &str = "places of triangles";
+/// Label of the slots' buffer, bind group and layout.
+const LABEL: &str = "triangle slots";
 
 /// A tracer's scene on the GPU.
 #[derive(Debug)]
 pub struct GpuTracer {
     scene: RayScene,
     mesh: MeshId,
-    /// Those of the cut-outs, and where they are in the scene.
+    /// Images of the cut-outs, and their ids in the scene.
     images: (Vec<AlphaImage>, Vec<ImageId>),
-    /// Place in leaf order of each triangle by its own index.
+    /// Position in leaf order of each triangle, by the triangle's index.
     slots: wgpu::Buffer,
     slots_group: wgpu::BindGroup,
 }
 
 impl GpuTracer {
-    /// Uploads a tracer. Triangles are stored in f32 relative to `origin` (world space, metres), which
-    /// should be near what is judged. With an origin of zero they equal the CPU's to the last bit.
+    /// Uploads a tracer. Triangles are stored in f32 relative to `origin` (world space, metres), which should
+    /// be near the judged points. If the origin is zero, they equal the CPU's triangles bit for bit.
     ///
     /// # Errors
     ///
-    /// When the tracer has an alpha test other than cut-outs, or is too large for the device.
+    /// If the tracer has an alpha test other than cut-outs, or is too large for the device.
     pub fn new(
         device: &wgpu::Device,
         queue: &wgpu::Queue,
@@ -56,12 +56,12 @@ impl GpuTracer {
         Ok(made)
     }
 
-    /// Uploads a tracer whose triangles have moved, or another tracer. Buffers are created again only when
-    /// their sizes change, and images are uploaded again only when they do.
+    /// Uploads a tracer whose triangles have moved, or another tracer. Buffers are created again only if
+    /// their sizes change, and images are uploaded again only if they change.
     ///
     /// # Errors
     ///
-    /// As for [`Self::new`]; the scene is unchanged then.
+    /// As for [`Self::new`]. The scene is then unchanged.
     pub fn update(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, tracer: &Tracer) -> Result<(), GpuTruthError> {
         let (images, ids) = &self.images;
         if tracer.len() != self.triangles() as usize || tracer.cut_outs().images() != images {
@@ -82,28 +82,28 @@ impl GpuTracer {
         queue.write_buffer(&self.slots, 0, bytemuck::cast_slice(&slots));
     }
 
-    /// The point that triangles are stored relative to, world space, metres.
+    /// Returns the point that triangles are stored relative to, world space, metres.
     pub fn origin(&self) -> DVec3 {
         self.scene.origin()
     }
 
-    /// Number of triangles.
+    /// Returns the number of triangles.
     pub fn triangles(&self) -> u32 {
         self.scene.triangles() as u32
     }
 
-    /// Bytes on the GPU.
+    /// Returns the size on the GPU, in bytes.
     pub fn bytes(&self) -> u64 {
         self.scene.bytes() + self.slots.size()
     }
 
-    /// The bind groups of rays and of [`slots_layout`].
+    /// Returns the bind groups of the rays and of [`slots_layout`].
     pub(crate) fn groups(&self) -> [&wgpu::BindGroup; 2] {
         [self.scene.group(), &self.slots_group]
     }
 }
 
-/// Layout of the bind group with the places of triangles.
+/// Creates the layout of the bind group with the triangles' slots.
 pub(crate) fn slots_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
     layout(device, LABEL, wgpu::ShaderStages::COMPUTE, &[storage(true)])
 }
@@ -117,7 +117,7 @@ fn upload_images(images: &[AlphaImage], scene: &mut RayScene) -> Result<Vec<Imag
     images.iter().map(&mut upload).collect()
 }
 
-/// The triangles, relative to the origin, with their hierarchy and their cut-outs.
+/// Returns the triangles, relative to the origin, with their hierarchy and their cut-outs.
 fn shape(tracer: &Tracer, origin: DVec3, images: &[ImageId]) -> Result<RayMesh, GpuTruthError> {
     if tracer.has_alpha_test() {
         return Err(GpuTruthError::AlphaTest);

@@ -1,14 +1,14 @@
-//! The records that the shaders read, field by field as in WGSL; tests compare sizes and offsets with naga's
-//! reflection.
+//! The records that the shaders read, with the same fields as in WGSL. Tests compare sizes and offsets with
+//! naga's reflection.
 
-/// Greatest number of shadow maps that a picture may have.
+/// Greatest number of shadow maps of a picture.
 pub const MAX_MAPS: usize = 8;
 
 /// A shadow map.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct MapUniform {
-    /// First row of clip from positions relative to the eye.
+    /// First row of the matrix clip from eye-relative position.
     pub row_x: [f32; 4],
     /// Second row.
     pub row_y: [f32; 4],
@@ -18,37 +18,40 @@ pub struct MapUniform {
     pub row_w: [f32; 4],
     /// Texels across and down.
     pub size: [f32; 2],
-    /// View depth below which the map is the first to be read, in metres; by view depth.
+    /// View depth below which the map is read first, in metres. For selection by view depth.
     pub split_far: f32,
-    /// 1 where depth 1 is nearest to the light.
+    /// 1 if depth 1 is nearest to the light.
     pub is_reversed: u32,
-    /// View depth from which the map in front is blended into this one, in metres; by view depth.
+    /// View depth from which the map in front is blended into this one, in metres. For selection by view
+    /// depth.
     pub blend_near: f32,
-    /// Its index.
+    /// Index of the map in the picture.
     pub index: u32,
-    /// Width of the edge zone where it is read: in pixels, or in texels where those are wider than pixels on screen.
+    /// Width of the edge zone if this map is read: in pixels, or in texels if these are wider than pixels on
+    /// screen.
     pub edge_width: f32,
     /// Unused.
     pub padding: u32,
 }
 
-/// The maps of the frame before.
+/// The maps of the previous frame.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct BeforeUniform {
-    /// Its unit direction of view.
+    /// The previous frame's unit view direction.
     pub forward: [f32; 3],
-    /// View depth of this frame's eye in it, in metres.
+    /// View depth of this frame's eye in the previous frame, in metres.
     pub eye_depth: f32,
-    /// Number of maps that points try; 0 where no frame before is compared.
+    /// Number of maps that a point tries; 0 if no previous frame is compared.
     pub map_count: u32,
-    /// 1 where maps are read by coverage.
+    /// 1 if maps are selected by coverage.
     pub by_coverage: u32,
     /// Unused.
     pub padding_0: u32,
     /// Unused.
     pub padding_1: u32,
-    /// The maps, in the order in which points try them. Their rows are of positions relative to this frame's eye.
+    /// The maps, in the order of selection. Their rows apply to positions relative to this
+    /// frame's eye.
     pub maps: [MapUniform; MAX_MAPS],
 }
 
@@ -56,7 +59,7 @@ pub struct BeforeUniform {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct JudgeUniform {
-    /// Eye, relative to the origin of the triangles, in metres.
+    /// Eye position relative to the origin of the triangles, in metres.
     pub eye: [f32; 3],
     /// View depth of the near plane, in metres.
     pub near: f32,
@@ -66,39 +69,40 @@ pub struct JudgeUniform {
     pub far: f32,
     /// Unit direction upward.
     pub up: [f32; 3],
-    /// Start of the shadow rays above the surface, in metres.
+    /// Offset of the shadow rays' start above the surface, in metres.
     pub ray_offset: f32,
-    /// Unit direction of view.
+    /// Unit view direction.
     pub forward: [f32; 3],
     /// Greatest view depth that is judged, in metres.
     pub max_distance: f32,
     /// Unit direction toward the light.
     pub to_light: [f32; 3],
-    /// Width of the edge zone where no map is read, in pixels.
+    /// Width of the edge zone if no map is read, in pixels.
     pub edge_width: f32,
-    /// Half of the picture's width and height, in metres: at a view depth of 1 m, or at any of an orthographic lens.
+    /// Half of the picture's width and height, in metres: at a view depth of 1 m, or at any view depth if the
+    /// lens is orthographic.
     pub half_size: [f32; 2],
     /// Pixels across and down.
     pub size: [u32; 2],
-    /// Number of maps that points try.
+    /// Number of maps that a point tries.
     pub map_count: u32,
-    /// 1 where the maps were drawn with depth clamp.
+    /// 1 if the maps were drawn with depth clamp.
     pub depth_clamp: u32,
     /// Number of triangles.
     pub triangles: u32,
-    /// 1 where maps are read by coverage.
+    /// 1 if maps are selected by coverage.
     pub by_coverage: u32,
-    /// Texels that the filter reads around a point.
+    /// Reach of the filter's footprint around a point, in texels.
     pub reach: f32,
-    /// Texels over which a map is blended into the next one, by coverage.
+    /// Texels over which a map is blended into the next one. For selection by coverage.
     pub blend: f32,
-    /// 1 where all lines of sight are parallel.
+    /// 1 if all lines of sight are parallel.
     pub is_orthographic: u32,
     /// Unused.
     pub padding: u32,
-    /// The maps, in the order in which points try them.
+    /// The maps, in the order of selection.
     pub maps: [MapUniform; MAX_MAPS],
-    /// The maps of the frame before.
+    /// The maps of the previous frame.
     pub before: BeforeUniform,
 }
 
@@ -106,9 +110,9 @@ pub struct JudgeUniform {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
 pub struct TallyRecord {
-    /// Pixels by [`crate::Class`] as a number.
+    /// Counted pixels by [`crate::Class`] as a number.
     pub all: [u32; 6],
-    /// The grazing ones of them.
+    /// Grazing pixels among them, by class.
     pub grazing: [u32; 6],
     /// Pixels that the light reaches in truth.
     pub lit: u32,
@@ -118,21 +122,30 @@ pub struct TallyRecord {
     pub uncovered: u32,
     /// Pixels in `bins` with more than one pixel per texel.
     pub undersampled: u32,
-    /// Pixels that are compared with the frame before.
+    /// Pixels that are compared with the previous frame.
     pub crawl_compared: u32,
-    /// Those of them whose verdict differs.
+    /// Compared pixels whose verdict differs.
     pub crawl_different: u32,
-    /// Low word of the sum of errors, in steps of [`Self::ERROR_ONE`].
+    /// Low word of the sum of errors, in steps of 1 / [`Self::ERROR_ONE`].
     pub error_low: u32,
-    /// High word of it.
+    /// High word of the sum of errors.
     pub error_high: u32,
-    /// Pixels by pixels per texel, in [bins](super::GpuTally::pixels_per_texel).
+    /// Low word of the sum of the cosines toward the light, in steps of 1 / [`Self::ERROR_ONE`].
+    pub light_low: u32,
+    /// High word of the sum of the cosines.
+    pub light_high: u32,
+    /// Low word of the sum of errors times cosines, in steps of 1 / [`Self::ERROR_ONE`].
+    pub light_error_low: u32,
+    /// High word of the sum of errors times cosines.
+    pub light_error_high: u32,
+    /// Histogram of pixels per texel, in [bins](super::GpuTally::pixels_per_texel).
     pub bins: [u32; TallyRecord::BINS],
 }
 
 impl TallyRecord {
-    /// Bins of pixels per texel.
+    /// Number of bins of pixels per texel.
     pub const BINS: usize = 1024;
-    /// Steps of an error of 1: 2^20, so that the 1024 pixels of a workgroup's square fit in a word.
+    /// Number of steps of an error of 1: 2^20, so that the sum over the 1024 pixels of a workgroup's square
+    /// fits into a word.
     pub const ERROR_ONE: u32 = 1 << 20;
 }

@@ -1,39 +1,39 @@
-//! Where world points lie in a shadow map, and the exact gradients of that.
+//! Positions of world points in a shadow map, and their exact gradients.
 //!
-//! A map is a matrix, a size and a split here, whatever renderer or file it comes from.
+//! A map consists of a matrix, a size and a split here, independent of the renderer or file it comes from.
 
 use glam::{DMat4, DVec2, DVec3, DVec4};
 
-/// Points this far outside a side, as a share of the map's size, still count as inside.
+/// Tolerance beyond a side, as a share of the map's size. Points within it count as inside.
 const SIDE_TOLERANCE: f64 = 1e-5;
-/// Points this far outside the depth range, as a share of it, still count as inside.
+/// Tolerance beyond the depth range, as a share of it. Points within it count as inside.
 const DEPTH_TOLERANCE: f64 = 1e-5;
-/// Step toward a sun that tells reversed depth from plain depth, in metres.
+/// Step toward a sun to detect reversed depth, in metres.
 const REVERSAL_STEP: f64 = 0.01;
-/// The same toward a light's position, as a share of the way: depth changes fast near the light, where the middle of
-/// the depth range lies.
+/// Step toward a light's position to detect reversed depth, as a share of the way. Depth changes fast near
+/// the light, where the middle of the depth range lies.
 const REVERSAL_SHARE: f64 = 0.01;
 
-/// A shadow map made ready to be measured.
+/// A shadow map that is prepared for measuring.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MeasuredMap {
-    /// Rows of clip from world.
+    /// Rows of the matrix clip from world.
     rows: [DVec4; 4],
     /// Width and height, in texels.
     pub size: DVec2,
-    /// View depth below which the map is the first to be read, in metres; by view depth.
+    /// View depth below which the map is read first, in metres. For selection by view depth.
     pub split_far: f64,
-    /// View depth from which points of the map in front are blended into this one, in metres, up to that one's
-    /// `split_far`; by view depth. Infinite for no blend.
+    /// View depth from which the map in front is blended into this one, in metres, up to the `split_far` of
+    /// the map in front. For selection by view depth. Infinite for no blend.
     pub blend_near: f64,
-    /// Radius of the filter in this map, if it differs from [the common one](super::PictureMaps::filter_radius), as it does
-    /// for soft filters: greatest distance per axis, in texels.
+    /// Radius of the filter in this map, if it differs from [the common
+    /// one](super::PictureMaps::filter_radius), as for soft filters: greatest distance per axis, in texels.
     pub filter_radius: Option<f32>,
-    /// Whether depth 1 is nearest to the light in the matrix; in [`MapPosition::depth`] it is always 0.
+    /// Whether depth 1 is nearest to the light in the matrix. In [`MapPosition::depth`], 0 always is.
     pub is_reversed: bool,
 }
 
-/// Where a world point lies in a map.
+/// Position of a world point in a map.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MapPosition {
     /// Texels from the left and from the top.
@@ -49,16 +49,16 @@ pub struct MapPosition {
 /// World-space gradients of a map's coordinates at a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MapGradients {
-    /// Of texels to the right, in texels a metre.
+    /// Gradient of the texel position to the right, in texels per metre.
     pub u: DVec3,
-    /// Of texels down, in texels a metre.
+    /// Gradient of the texel position down, in texels per metre.
     pub v: DVec3,
-    /// Of depth (0 nearest to the light), in depth ranges a metre.
+    /// Gradient of depth (0 nearest to the light), in depth ranges per metre.
     pub depth: DVec3,
 }
 
 impl MapGradients {
-    /// Returns the texels to the right and down that each of two steps in the world moves, in metres.
+    /// Returns how many texels to the right and down each of two world-space steps, in metres, moves a point.
     pub fn texels_per_step(&self, steps: [DVec3; 2]) -> [DVec2; 2] {
         steps.map(|step| DVec2::new(self.u.dot(step), self.v.dot(step)))
     }
@@ -67,50 +67,50 @@ impl MapGradients {
 impl MeasuredMap {
     /// Prepares a map of a sun, of `size` texels across and down.
     ///
-    /// `clip_from_world` has x and y in -1..=1 (y up), and depth in 0..=1 after division by w, plain
-    /// or reversed; perspective is allowed. `split_far` is the view depth, in metres, below which the
-    /// map is the first to be read. `to_light` is the unit direction toward the light, world axes: it
-    /// tells whether depth is reversed.
+    /// `clip_from_world` has x and y in -1..=1 (y up), and depth in 0..=1 after division by w, plain or
+    /// reversed. It may be a perspective. `split_far` is the view depth, in metres, below which the map is
+    /// read first. `to_light` is the unit direction toward the light, world axes, used to detect whether
+    /// depth is reversed.
     pub fn new(clip_from_world: &DMat4, size: DVec2, split_far: f64, to_light: DVec3) -> Self {
         Self::prepared(clip_from_world, size, split_far, |_| to_light * REVERSAL_STEP)
     }
 
     /// Prepares a map of a light with a position (world space, metres), of `size` texels across and down.
     ///
-    /// `clip_from_world` is a perspective from that position, as for [`Self::new`], with w above 0 in front of the
-    /// light; it may be one without a far plane. `split_far` is as for [`Self::new`]: infinite for a map that is read at
-    /// every view depth. The tolerances of [`Self::is_inside`] are in the map's depth, which a perspective spreads
-    /// unevenly: toward the far plane they are longer in metres.
+    /// `clip_from_world` is a perspective from that position, as for [`Self::new`], with w above 0 in front
+    /// of the light. It may lack a far plane. `split_far` is as for [`Self::new`]; infinite for a map that is
+    /// read at every view depth. The tolerances of [`Self::is_inside`] are in the map's depth, which a
+    /// perspective spreads unevenly: toward the far plane they are longer in metres.
     pub fn of_spot(clip_from_world: &DMat4, size: DVec2, split_far: f64, position: DVec3) -> Self {
         Self::prepared(clip_from_world, size, split_far, |middle| (position - middle) * REVERSAL_SHARE)
     }
 
-    /// `step` leads from a point some way toward the light.
+    /// Prepares a map. `step` returns a step from a point toward the light.
     fn prepared(clip_from_world: &DMat4, size: DVec2, split_far: f64, step: impl Fn(DVec3) -> DVec3) -> Self {
         let rows = [0, 1, 2, 3].map(|row| clip_from_world.row(row));
         let is_reversed = is_reversed(clip_from_world, step);
         Self { rows, size, split_far, blend_near: f64::INFINITY, filter_radius: None, is_reversed }
     }
 
-    /// This map with points of the map in front blended into it from a view depth on, in metres.
+    /// Returns this map, with the map in front blended into it from a view depth on, in metres.
     #[must_use]
     pub fn with_blend_near(self, blend_near: f64) -> Self {
         Self { blend_near, ..self }
     }
 
-    /// This map with its own reach of the filter, in texels, which sets the width of its edge zone.
+    /// Returns this map with its own filter radius, in texels, which sets the width of its edge zone.
     #[must_use]
     pub fn with_filter_radius(self, filter_radius: f32) -> Self {
         Self { filter_radius: Some(filter_radius), ..self }
     }
 
-    /// Rows of clip from positions relative to a point of the world.
+    /// Returns the rows of the matrix clip from positions relative to `origin`.
     #[cfg(feature = "gpu")]
     pub(crate) fn rows_from(&self, origin: DVec3) -> [DVec4; 4] {
         self.rows.map(|row| row.truncate().extend(row.truncate().dot(origin) + row.w))
     }
 
-    /// Where a point of the world lies.
+    /// Projects a world point into the map.
     pub fn project(&self, point: DVec3) -> MapPosition {
         let [x, y, z, w] = self.rows.map(|row| row.truncate().dot(point) + row.w);
         let ndc = DVec3::new(x, y, z) / w;
@@ -119,26 +119,27 @@ impl MeasuredMap {
         MapPosition { texel, depth, ndc, w }
     }
 
-    /// Whether a position is within the map's sides, whatever its depth. Up to 1e-5 of the map's size
-    /// beyond a side counts as within.
+    /// Returns whether a position is within the map's sides at any depth. Positions up to 1e-5 of the map's
+    /// size beyond a side count as within.
     pub fn is_within_sides(&self, position: &MapPosition) -> bool {
         let tolerance = self.size * SIDE_TOLERANCE;
         position.w > 0.0 && position.texel.cmpge(-tolerance).all() && position.texel.cmple(self.size + tolerance).all()
     }
 
-    /// Whether a position is in the map: within its sides and its depth range. Up to 1e-5 of the
-    /// depth range beyond an end counts as within.
+    /// Returns whether a position is within the map's sides and its depth range. Positions up to 1e-5 of the
+    /// depth range beyond an end count as within.
     pub fn is_inside(&self, position: &MapPosition) -> bool {
         let depths = -DEPTH_TOLERANCE..=1.0 + DEPTH_TOLERANCE;
         self.is_within_sides(position) && depths.contains(&position.depth)
     }
 
-    /// Texels between a position and the nearest of the map's sides; negative beside it.
+    /// Returns the distance between a position and the nearest side of the map, in texels. Negative outside
+    /// of the map.
     pub fn texels_to_edge(&self, position: &MapPosition) -> f64 {
         position.texel.min(self.size - position.texel).min_element()
     }
 
-    /// Gradients at a position in this map.
+    /// Computes the gradients at a position in this map.
     pub fn gradients(&self, position: &MapPosition) -> MapGradients {
         let along_w = self.rows[3].truncate();
         let gradient = |row: usize| (self.rows[row].truncate() - along_w * position.ndc[row]) / position.w;
@@ -151,7 +152,7 @@ impl MeasuredMap {
     }
 }
 
-/// Whether depth rises toward the light, at the middle of the map.
+/// Returns whether depth rises toward the light at the middle of the map.
 fn is_reversed(clip_from_world: &DMat4, step: impl Fn(DVec3) -> DVec3) -> bool {
     let middle = clip_from_world.inverse().project_point3(DVec3::new(0.0, 0.0, 0.5));
     let depth_at = |point| clip_from_world.project_point3(point).z;
@@ -167,13 +168,13 @@ mod tests {
 
     const LAMP: DVec3 = DVec3::new(-3.0, 5.0, 2.0);
 
-    /// A headlight toward the origin, 90 degrees wide, of 1024 by 512 texels.
+    /// Returns a headlight that shines toward the origin, 90 degrees wide, of 1024 by 512 texels.
     fn lamp_map(clip_from_light: DMat4) -> MeasuredMap {
         let light_from_world = look_at_mat4(LAMP, DVec3::ZERO, DVec3::Y);
         MeasuredMap::of_spot(&(clip_from_light * light_from_world), DVec2::new(1024.0, 512.0), 9.0, LAMP)
     }
 
-    /// A tilted light, plain or reversed, orthographic or warped, 1024 by 512 texels.
+    /// Returns a tilted light, plain or reversed, orthographic or warped, 1024 by 512 texels.
     fn map(is_reversed: bool, warp: f64) -> (MeasuredMap, DVec3) {
         let to_light = DVec3::new(0.3, 0.8, 0.2).normalize();
         let light_from_world = look_at_mat4(to_light * 20.0, DVec3::ZERO, DVec3::X);
@@ -203,7 +204,7 @@ mod tests {
     #[test]
     fn a_perspective_map_divides_by_the_way_before_the_light() {
         let wide = 90f64.to_radians();
-        // The near planes reach from one that is far nearer to the light than any step in metres.
+        // The smallest near plane is far nearer to the light than any step in metres.
         for near in [1e-4, 0.1, 1.0] {
             let plain = lamp_map(perspective(wide, 1.0, near, 100.0));
             let reversed = lamp_map(perspective_infinite_reverse(wide, 1.0, near));
@@ -211,8 +212,8 @@ mod tests {
             let forward = -LAMP.normalize();
             let right = forward.cross(DVec3::Y).normalize();
             for way in [2.0, 20.0] {
-                // Half of 90 degrees to the right is as far as the way before the light; half of that is a quarter of
-                // the map beside its middle.
+                // With 90 degrees, half of the width is as long as the way before the light. Half of that is
+                // a quarter of the map's width from its middle.
                 let point = LAMP + (forward + right * 0.5) * way;
                 for map in [plain, reversed] {
                     let texel = map.project(point).texel;

@@ -1,7 +1,7 @@
-//! Shadow maps as the measures take them: where a point lies in a map, which map it reads, and how
-//! finely that map samples it.
+//! Shadow maps as input of the measurements: the position of a point in a map, the selection of the map that
+//! a point reads, and the map's pixels per texel at that point.
 //!
-//! Pictures and fits are measured by the same rules, so these stand below both.
+//! Pictures and fits are measured by the same rules, so both use this module.
 
 mod measured;
 mod picture;

@@ -1,4 +1,4 @@
-//! The shadow maps of one picture, and how its shader reads them.
+//! The shadow maps of one picture, and its shader's rules for reading them.
 
 use glam::DVec3;
 use shadowfit::selection::{DepthRange, MapOrder, MapRead, by_coverage, by_view_depth};
@@ -6,48 +6,47 @@ use shadowfit::selection::{DepthRange, MapOrder, MapRead, by_coverage, by_view_d
 use super::measured::MeasuredMap;
 use super::selection::SelectedMap;
 
-/// Which of the maps of a picture a point reads; [`shadowfit::selection`] has the rules.
+/// Selection of the map that a point reads. [`shadowfit::selection`] documents the rules.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum MapReading {
-    /// The first one whose split is beyond the point's view depth; where that one does not hold the point, the next
-    /// later one that does. It is blended into the next one from that one's `blend_near` on.
+    /// The first map whose split is beyond the point's view depth. If it does not hold the point, the next
+    /// later map that does. It is blended into the next map from that map's `blend_near` on.
     ViewDepth,
-    /// The finest one that holds the point with the filter's reach.
+    /// The finest map that holds the point and the filter's footprint.
     Coverage {
         /// The maps that are read, the finest first.
         order: MapOrder,
-        /// Texels over which a map is blended into the next one toward its border; 0 for none.
+        /// Texels over which a map is blended into the next one toward its border; 0 for no blend.
         blend: f32,
     },
 }
 
-/// The shadow maps of a picture, and how they are read.
+/// The shadow maps of a picture, and the way they are read.
 #[derive(Clone, Copy, Debug)]
 pub struct PictureMaps<'a> {
-    /// Maps; by view depth they are in order of their splits.
+    /// Maps. For selection by view depth, they are sorted by their splits.
     pub maps: &'a [MeasuredMap],
-    /// Which of them a point reads.
+    /// Selection of the map that a point reads.
     pub reading: MapReading,
-    /// Radius of the filter: greatest distance per axis, in texels, from the sample point to the
-    /// centre of a texel of non-zero weight (0.5 point, 1 hardware 2×2). Selection by coverage uses it, and so
-    /// does the edge zone of a map without [a radius](MeasuredMap::filter_radius).
+    /// Radius of the filter: greatest distance per axis, in texels, from the sample point to the centre of a
+    /// texel of non-zero weight (0.5 point, 1 hardware 2×2). Selection by coverage uses it. It also sets the
+    /// edge zone of a map without [its own radius](MeasuredMap::filter_radius).
     pub filter_radius: f32,
-    /// Whether the maps were drawn with depth clamp, so that they also hold casters before their
-    /// near plane.
+    /// Whether the maps were drawn with depth clamp, so that they also hold casters before their near plane.
     pub depth_clamp: bool,
 }
 
 impl<'a> PictureMaps<'a> {
-    /// Width of the edge zone where a point reads a map, in pixels where a texel is no wider than a pixel on screen,
-    /// otherwise in texels: the filter's reach in that map and one more, at least 1.5. Without a map
-    /// (`None`), or with an index beyond the last one, the reach is [`Self::filter_radius`].
+    /// Returns the width of the edge zone of a point that reads a map: the filter's radius in that map plus
+    /// 1, at least 1.5. It is in pixels, or in texels if a texel is wider than a pixel on screen. Without a
+    /// map (`None`), or if the index is out of range, the radius is [`Self::filter_radius`].
     pub fn edge_width(&self, map: Option<usize>) -> f32 {
         let own = map.and_then(|map| self.maps.get(map)?.filter_radius);
         (own.unwrap_or(self.filter_radius) + 1.0).max(1.5)
     }
 
-    /// The maps that a point of the world reads, and with which weights; `None` where no map covers it. `view_depth` is
-    /// in metres.
+    /// Returns the maps that a world point reads, and their weights. `None` if no map covers it. `view_depth`
+    /// is in metres.
     pub fn read(&self, view_depth: f64, point: DVec3) -> Option<MapRead> {
         let free = |index: usize| {
             let map = self.maps.get(index)?;
@@ -68,7 +67,7 @@ impl<'a> PictureMaps<'a> {
         }
     }
 
-    /// The map that weighs more of those that a point reads.
+    /// Returns the map with the greatest weight among the maps that a point reads.
     pub(crate) fn main(&self, view_depth: f64, point: DVec3) -> Option<SelectedMap<'a>> {
         let index = self.read(view_depth, point)?.main();
         let map = &self.maps[index];

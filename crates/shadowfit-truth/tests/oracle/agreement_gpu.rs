@@ -1,6 +1,6 @@
-//! The GPU's classes against the CPU's, on scenes with every kind of error in them.
+//! The GPU's classes compared with the CPU's, on scenes with every kind of error.
 //!
-//! The two differ only by rounding: at pixels whose shadow ray passes within micrometres of an edge.
+//! They differ only by rounding, at pixels whose shadow ray passes within micrometres of an edge.
 
 use glam::{DMat4, DVec2, DVec3, Vec2, Vec3};
 use shadowfit::selection::MapOrder;
@@ -13,7 +13,7 @@ use shadowfit_truth::{
 
 use super::scenes::{PlainMap, Triangles, cuboid, level, looking_at, map_around, quad, sphere};
 
-/// A picture that both judge.
+/// A picture that both the CPU and the GPU judge.
 pub(crate) struct Picture {
     pub(crate) tracer: Tracer,
     pub(crate) camera: PixelCamera,
@@ -21,7 +21,7 @@ pub(crate) struct Picture {
     pub(crate) maps: Vec<PlainMap>,
     pub(crate) reading: MapReading,
     depth_clamp: bool,
-    /// What the GPU's triangles are relative to.
+    /// Point that the GPU's triangles are relative to.
     pub(crate) origin: DVec3,
 }
 
@@ -35,8 +35,8 @@ struct Both {
 }
 
 impl Picture {
-    /// A scene under a light, with a near and a far map of 512 texels. No side of the picture is a whole
-    /// number of workgroups.
+    /// Creates a scene under a light, with a near and a far map of 512 texels. The picture's sides are not
+    /// multiples of a workgroup's.
     pub(crate) fn new(triangles: Triangles, eye: DVec3, to_light: DVec3) -> Self {
         let near = PlainMap { split_far: 6.0, ..map_around(DVec3::ZERO, to_light, 6.0, 4.0, 512) };
         Self {
@@ -50,7 +50,8 @@ impl Picture {
         }
     }
 
-    /// The scene under maps that overlap, of several sizes and not in order of these, and one that is not read.
+    /// Creates the scene under overlapping maps of several sizes, not sorted by size, and one map that is not
+    /// read.
     pub(crate) fn with_crossing_maps(blend: f32) -> Self {
         let around = |x: f64, width: f64, texels: u32| map_around(DVec3::X * x, sun(), width, 6.0, texels);
         let maps = vec![around(0.0, 24.0, 512), around(1.0, 3.0, 400), around(-1.5, 6.0, 300), around(0.5, 8.0, 512)];
@@ -70,9 +71,9 @@ impl Picture {
         self.maps.iter().map(|map| map.measured(self.to_light())).collect()
     }
 
-    /// Judges the picture twice. Its factors are those of maps that hold the nearest triangle at
-    /// each texel's centre, with a bias of a centimetre on the left and of 3 m on the right:
-    /// acne, leaks, holes and jagged edges.
+    /// Judges the picture on both. Its factors come from maps that hold the nearest triangle at each texel's
+    /// centre, with a bias of a centimetre on the left and of 3 m on the right. This gives acne, leaks, holes
+    /// and jagged edges.
     fn judge(&self) -> Both {
         self.judge_maps(&self.measured())
     }
@@ -88,12 +89,12 @@ impl Picture {
         Both { truth, judged, gpu, edge_widths }
     }
 
-    /// How the maps are read.
+    /// Returns the maps and the way they are read.
     pub(crate) fn picture_maps<'a>(&self, maps: &'a [MeasuredMap]) -> PictureMaps<'a> {
         PictureMaps { maps, reading: self.reading, filter_radius: 1.0, depth_clamp: self.depth_clamp }
     }
 
-    /// The factor of each pixel; the sky is lit.
+    /// Computes the factor of each pixel. The sky is lit.
     pub(crate) fn factors(&self, maps: &PictureMaps, truth: &Truth) -> Vec<f32> {
         let factor = |point: &Option<TruthPoint>| point.as_ref().map_or(1.0, |point| self.factor(maps, point));
         truth.points.iter().map(factor).collect()
@@ -143,7 +144,7 @@ impl Picture {
     }
 }
 
-/// The picture of triangles and factors that a renderer would have drawn.
+/// Creates the picture of triangles and factors that a renderer would have drawn.
 pub(crate) fn seen_texture(
     device: &wgpu::Device,
     queue: &wgpu::Queue,
@@ -173,10 +174,10 @@ pub(crate) fn seen_texture(
 }
 
 impl Both {
-    /// Asserts that at least 99.9% of the facing pixels off the edge zone, and 99.5% of all of them,
-    /// have the same class; that the map read is the same for 99.9%, and pixels per texel within 0.2%
-    /// for as many; and that edge zones are the very same wherever truth is, as far as a pixel's zone
-    /// reaches. Returns the CPU's number of pixels of each class.
+    /// Asserts that at least 99.9% of the facing pixels off the edge zone, and 99.5% of all facing pixels,
+    /// have the same class; that 99.9% read the same map and have pixels per texel within 0.2%; and that edge
+    /// zones are identical wherever the truth is, within a pixel's zone. Returns the CPU's number of pixels
+    /// of each class.
     fn assert_agreement(&self, name: &str) -> [usize; 6] {
         let pixels = || (0..self.gpu.len()).filter(|pixel| self.truth.verdict(*pixel).is_some());
         let same = |pixel: &usize| self.judged.classes[*pixel] == self.gpu[*pixel].class;
@@ -186,7 +187,7 @@ impl Both {
         let off_edges: Vec<usize> = pixels().filter(|pixel| !self.judged.edge_zone[*pixel]).collect();
         let classes = [share(off_edges, &same), share(pixels().collect(), &same)];
         let maps = share(pixels().collect(), &|pixel| self.judged.map_index[*pixel] == self.gpu[*pixel].map_index);
-        // The texture has 256 steps an octave: half a step is 0.14%.
+        // The texture has 256 steps per octave: half a step is 0.14%.
         let texels = share(pixels().collect(), &|pixel| {
             let (found, wanted) = (self.gpu[*pixel].pixels_per_texel, self.judged.pixels_per_texel[*pixel]);
             found == wanted || (found / wanted - 1.0).abs() <= 0.002
@@ -200,8 +201,8 @@ impl Both {
         counts
     }
 
-    /// Every pixel whose edge zone differs has a pixel of differing truth as near as its zone reaches,
-    /// or a transition exactly at the end of its reach, to 0.1%.
+    /// Asserts that every pixel whose edge zone differs has a pixel of differing truth within its zone, or a
+    /// transition exactly at the end of its zone, to 0.1%.
     fn assert_edge_zones(&self, name: &str) {
         let width = self.truth.camera.size[0] as usize;
         let position = |pixel: usize| DVec2::new((pixel % width) as f64, (pixel / width) as f64);
@@ -236,12 +237,12 @@ pub(crate) fn boxes() -> Triangles {
         let half = Vec3::new(0.2, 0.3 + 0.15 * (index % 5) as f32, 0.25);
         cuboid(centre + Vec3::Y * 0.02 - half * Vec3::new(1.0, 0.0, 1.0), centre + half * Vec3::new(1.0, 2.0, 1.0))
     });
-    // A roof above the far map's near plane, so that there are holes.
+    // A roof above the far map's near plane causes holes.
     let roof = level(5.0, [2.0, -6.0], [7.0, 3.0]);
     ground.into_iter().chain(boxes).chain(sphere(Vec3::new(-1.5, 1.0, 1.5), 0.6, 24)).chain(roof).collect()
 }
 
-/// Numbers from 0 to 1 that look random and are the same everywhere.
+/// Returns pseudorandom numbers from 0 to 1 that are the same on every machine.
 fn random() -> impl FnMut() -> f32 {
     let mut state = 0x9E37_79B9_7F4A_7C15u64;
     move || {

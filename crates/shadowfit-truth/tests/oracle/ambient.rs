@@ -5,14 +5,14 @@ use shadowfit_truth::{AmbientSettings, AmbientTruth, PixelCamera, Tracer, Truth}
 
 use super::scenes::{Triangles, cuboid, level, looking_at, looking_down, quad};
 
-/// So large that rays of a metre do not see its ends.
+/// Half size of the planes. Rays of a metre do not reach their ends.
 const FAR: f32 = 50.0;
 
 fn floor() -> Triangles {
     level(0.0, [-FAR, -FAR], [FAR, FAR])
 }
 
-/// The plane x = 0 above the floor.
+/// Returns the plane x = 0 above the floor.
 fn wall() -> Triangles {
     let at = |y: f32, z: f32| Vec3::new(0.0, y, z);
     quad([at(0.0, -FAR), at(FAR, -FAR), at(FAR, FAR), at(0.0, FAR)])
@@ -23,7 +23,7 @@ fn traced(triangles: Triangles, camera: &PixelCamera, settings: &AmbientSettings
     AmbientTruth::trace(&tracer, camera, settings, &Truth::seen_by_rays(&tracer, camera))
 }
 
-/// Occlusion of a pixel of one metre a side, straight over (x, 0).
+/// Returns the occlusion of a pixel of one metre a side, straight over (x, 0).
 fn over(triangles: Triangles, x: f64, settings: &AmbientSettings) -> f64 {
     let camera = PixelCamera { eye: DVec3::new(x, 0.9, 0.0), near: 1e-3, ..looking_down(0.9, 1e-3, [1, 1]) };
     traced(triangles, &camera, settings).occlusion[0].expect("the floor").into()
@@ -38,15 +38,15 @@ fn an_open_plane_hides_nothing_and_the_sky_has_no_value() {
     assert!(seen.len() > 500 && seen.iter().all(|occlusion| *occlusion == 0.0));
 }
 
-/// Occlusion of a point on a floor at a distance `k` from an endless wall, in units of the distance of the fall-off.
+/// Returns the occlusion of a point on a floor at a distance `k` from an endless wall, in units of the
+/// fall-off distance.
 ///
-/// Directions by the cosine, seen from above, fill the disc evenly: the share of those with a component u toward the
-/// wall is (2/π) √(1-u²) du. Such a ray meets the wall at k/u, so that
-///     O = (2/π) ∫ from k to 1 of √(1-u²) (1 - k/u) du.
-/// With ∫ √(1-u²) du = (u √(1-u²) + asin u)/2, ∫ √(1-u²)/u du = √(1-u²) - artanh √(1-u²), and s = √(1-k²), that is
-///     O = (acos k + k s - 2 k artanh s) / π:
-/// 1/2 in the corner, 0 from k = 1 on, and at k = 0.4, where acos k = 1.15928, s = 0.916515 and artanh s = 1.56680,
-/// (1.15928 + 0.36661 - 1.25344)/π = 0.08672.
+/// Cosine-weighted directions, seen from above, fill the disc evenly: the share of directions with a
+/// component u toward the wall is `(2/π) √(1-u²) du`. Such a ray meets the wall at k/u, so the occlusion is
+/// `O = (2/π) ∫ √(1-u²) (1 - k/u) du` from k to 1. With `∫ √(1-u²) du = (u √(1-u²) + asin u)/2`,
+/// `∫ √(1-u²)/u du = √(1-u²) - artanh √(1-u²)` and `s = √(1-k²)`, this is
+/// `O = (acos k + k s - 2 k artanh s) / π`: 1/2 in the corner, 0 from k = 1 on, and 0.08672 at k = 0.4, where
+/// acos k = 1.15928, s = 0.916515 and artanh s = 1.56680.
 fn beside_a_wall(k: f64) -> f64 {
     let s = (1.0 - k * k).sqrt();
     (k.acos() + k * s - 2.0 * k * s.atanh()) / core::f64::consts::PI
@@ -64,7 +64,8 @@ fn a_floor_beside_a_wall_is_occluded_as_the_integral_says() {
                     &AmbientSettings { rays, distance, ..Default::default() },
                 )
             };
-            // A step at the border of a disc errs by about n^(-3/4) of 32 even points, 7%, and this one has no step.
+            // A step at the border of a disc with 32 even points errs by about n^(-3/4), 7%. This integrand
+            // has no step.
             let (few, many, wanted) = (of(32), of(8192), beside_a_wall(k));
             assert!((few - wanted).abs() < 0.03, "{few} {wanted} at {k}");
             assert!((many - wanted).abs() < 1e-3, "{many} {wanted} at {k}");
@@ -92,9 +93,9 @@ fn a_closed_box_is_nearly_black_where_its_walls_are_near_and_open_where_they_are
         let camera = PixelCamera { eye, near: 1e-4, ..looking_down(f64::from(half), 1e-4, [1, 1]) };
         f64::from(traced(inside(half), &camera, &settings).occlusion[0].expect("the floor"))
     };
-    // No ray is longer than the diagonal of 5 cm times √3.
+    // No ray is longer than the diagonal, 5 cm times √3.
     assert!(at(0.025, 0.0) > 1.0 - 0.05 * 3f64.sqrt() && at(0.025, 0.0) < 1.0);
-    // In a box of 20 m only the floor beside a wall is occluded, and as beside an endless one.
+    // In a box of 20 m only the floor beside a wall is occluded, as if the wall were endless.
     assert_eq!(at(10.0, 0.0), 0.0);
     assert!((at(10.0, 9.9) - beside_a_wall(0.1)).abs() < 0.03, "{}", at(10.0, 9.9));
 }
@@ -108,7 +109,7 @@ fn the_error_of_a_picture_is_its_mean_over_the_pixels_that_have_a_truth() {
         truth.mean_absolute_error(&(0..400).map(|pixel| value(pixel % 40)).collect::<Vec<_>>())
     };
     assert_eq!(error(&|_| 0.0), Some(0.0));
-    // Half of the 20 columns at 0.5, and what stands in the sky is left out.
+    // Half of the 20 columns are at 0.5. Values in the sky are ignored.
     assert_eq!(error(&|column| if column < 10 { 0.5 } else { 0.0 }), Some(0.25));
     assert_eq!(error(&|column| if column < 20 { 0.0 } else { 1.0 }), Some(0.0));
     assert_eq!(error(&|_| 7.0), Some(1.0));

@@ -1,4 +1,4 @@
-//! Shares of made-up shadow factors: a floor under half a roof, judged to the pixel.
+//! Class shares for made-up shadow factors: a floor under half a roof, exact to the pixel.
 
 use glam::DVec3;
 use shadowfit::selection::MapOrder;
@@ -9,8 +9,8 @@ use shadowfit_truth::{
 
 use super::scenes::{PlainMap, level, looking_down, map_around, shadow_map};
 
-/// 40 by 10 pixels of a decimetre on the floor, seen from below the roof, which covers its left
-/// half (x < 0) at a height of 2 m; the light falls straight down.
+/// A floor of 40 by 10 pixels of 10 cm, seen from below the roof. The roof covers its left half (x < 0) at a
+/// height of 2 m. The light falls straight down.
 struct Room {
     tracer: Tracer,
     truth: Truth,
@@ -35,7 +35,7 @@ impl Room {
         Self { tracer, truth }
     }
 
-    /// Judges factors by column.
+    /// Judges factors that are given by column.
     fn judge(&self, factor: impl Fn(usize) -> f32, map: MeasuredMap, depth_clamp: bool) -> Judged {
         self.judge_counting(factor, map, depth_clamp, |_| true)
     }
@@ -53,12 +53,13 @@ impl Room {
     }
 }
 
-/// A map 8 m wide around the floor, whose texels are `pixels_per_texel` pixels wide, from `top` metres over it.
+/// Returns a map 8 m wide around the floor, with texels `pixels_per_texel` pixels wide, which starts `top` metres
+/// above it.
 fn map(pixels_per_texel: u32, top: f64) -> MeasuredMap {
     shadow_map(DVec3::ZERO, DVec3::Y, 8.0, top, 80 / pixels_per_texel)
 }
 
-/// False shadow, false light, hole, edge and wrong, in columns of 40.
+/// Returns false shadow, false light, hole, edge and wrong, in columns of 40.
 fn columns(tally: &PictureTally) -> [u64; 5] {
     [tally.all.false_shadow, tally.all.false_light, tally.all.hole, tally.all.edge, tally.all.wrong].map(|count| {
         assert!(count.is_multiple_of(10), "whole columns");
@@ -82,11 +83,11 @@ fn a_perfect_map_has_no_wrong_pixel() {
 
 #[test]
 fn a_map_that_shadows_everything_is_false_shadow_but_for_the_edge_zone() {
-    // Half of 40 columns is wrong; the edge zone of 1.5 pixels takes the first (0.5 from the
-    // border) and the second (1.5).
+    // Half of 40 columns are wrong. The edge zone of 1.5 pixels contains the first (0.5 from the border) and
+    // the second (1.5).
     let tally = Room::new().judge(|_| 0.0, map(1, 9.0), false).tally;
     assert_eq!((columns(&tally), tally.error), ([18, 0, 0, 2, 20], 200.0));
-    // No edge in the map: every true one is 32 pixels off.
+    // The map has no edge, so every true one counts as 32 pixels off.
     assert_eq!((tally.transitions, tally.displacement), (10, 320.0));
 }
 
@@ -101,7 +102,7 @@ fn coarse_texels_widen_the_edge_zone_by_their_width_on_screen() {
 
 #[test]
 fn a_filter_that_reaches_farther_in_a_map_widens_the_edge_zone_there() {
-    // 3 and 1 texels of a pixel: columns up to 4 pixels from the border.
+    // 3 + 1 texels of a pixel: columns up to 4 pixels from the border.
     let judged = Room::new().judge(|_| 0.0, map(1, 9.0).with_filter_radius(3.0), false);
     assert_eq!(columns(&judged.tally), [16, 0, 0, 4, 20]);
 }
@@ -146,7 +147,7 @@ fn points_read_the_first_map_beyond_their_depth_and_classes_name_it() {
 #[test]
 fn of_two_maps_the_one_that_weighs_more_names_the_texels_and_the_occluders() {
     let room = Room::new();
-    // The finer map ends at x = 0.7 and is below the roof; the coarser one has texels of two pixels.
+    // The finer map ends at x = 0.7 and is below the roof. The coarser one has texels of two pixels.
     let fine = shadow_map(DVec3::X * -3.3, DVec3::Y, 8.0, 1.0, 80);
     let maps = [map(2, 9.0), fine];
     let order = MapOrder::by_area([Some(4.0), Some(1.0)]);
@@ -155,7 +156,8 @@ fn of_two_maps_the_one_that_weighs_more_names_the_texels_and_the_occluders() {
         let seen = PictureMaps { maps: &maps, reading, filter_radius: 5.0, depth_clamp: false };
         let judged = judge(&room.tracer, &room.truth, &seen, &[1.0; PIXELS], |_| true);
         for pixel in 0..PIXELS {
-            // From here on less than 5 texels are free in the finer one, or less than 5 and half of the blend.
+            // From this column on, the point is less than 5 texels from the finer map's border, or less than
+            // 5 and half of the blend.
             let is_fine = pixel % 40 < columns;
             assert_eq!(judged.map_index[pixel], Some(u8::from(is_fine)), "column {}, blend {blend}", pixel % 40);
             let texel = if is_fine { 1.0 } else { 2.0 };
@@ -220,7 +222,7 @@ fn soft_truth_counts_as_it_is_and_is_lit_from_one_half_on() {
         PictureMaps { maps: &[map(1, 9.0)], reading: MapReading::ViewDepth, filter_radius: 0.5, depth_clamp: false };
     let tally = judge(&room.tracer, &room.truth, &maps, &factors, |_| true).tally;
     assert_eq!((tally.all.wrong, tally.error), (0, 0.0));
-    // A hole is one also where only some of the rays are blocked.
+    // A pixel is a hole even if only some of the rays are blocked.
     let low = PictureMaps { maps: &[map(1, 1.0)], ..maps };
     let judged = judge(&room.tracer, &room.truth, &low, &[1.0; PIXELS], |_| true);
     assert_eq!((judged.tally.all.hole, judged.tally.all.wrong), (200, 200));
@@ -245,7 +247,7 @@ fn merged_tallies_are_those_of_both_pictures() {
     assert!((p95 - 4.0).abs() < 4.0 * 0.005 && (p50 - 1.0).abs() < 0.005, "{p50} {p95}");
 }
 
-/// Maps that are read by view depth with one tap.
+/// Returns maps that are selected by view depth and read with one tap.
 fn by_view_depth(maps: &[MeasuredMap]) -> PictureMaps<'_> {
     PictureMaps { maps, reading: MapReading::ViewDepth, filter_radius: 0.5, depth_clamp: false }
 }
@@ -255,7 +257,7 @@ fn crawl_compares_edge_pixels_that_the_maps_of_both_frames_hold() {
     let room = Room::new();
     let judged = room.judge(right_factor, map(1, 9.0), false);
     let now: Vec<f32> = (0..PIXELS).map(|pixel| right_factor(pixel % 40)).collect();
-    // One column of the four in the edge zone was lit, and so was one far from it.
+    // In the previous frame, one of the four columns in the edge zone was lit, and one column far from it.
     let then: Vec<f32> = (0..PIXELS).map(|p| if [19, 3].contains(&(p % 40)) { 1.0 } else { now[p] }).collect();
     let maps = [map(1, 9.0)];
     let before = MapsBefore { maps: by_view_depth(&maps), eye: DVec3::Y * 2.0, forward: DVec3::NEG_Y, factors: &then };
@@ -263,12 +265,12 @@ fn crawl_compares_edge_pixels_that_the_maps_of_both_frames_hold() {
         let crawl = crawl(&room.truth, &judged, &now, &MapsBefore { maps: by_view_depth(maps), ..before });
         ([crawl.different, crawl.compared], crawl.change, crawl.change_compared)
     };
-    // Factors of the column far from the edge differ as well, among those of all pixels.
+    // The factors of the column far from the edge also differ, and enter the sum over all pixels.
     assert_eq!(compared(&maps), ([10, 40], 20.0, 400));
-    // Two of its columns are beside the maps of the frame before.
+    // Two columns of the edge zone are outside the previous frame's maps.
     let beside = [shadow_map(DVec3::X * -4.0, DVec3::Y, 8.0, 9.0, 80)];
     assert_eq!(compared(&beside).0, [10, 20]);
-    // Or beyond its last split.
+    // All points lie beyond its last split.
     let short = PlainMap { split_far: 1.9, ..map_around(DVec3::ZERO, DVec3::Y, 8.0, 9.0, 80) };
     assert_eq!(compared(&[short.measured(DVec3::Y)]), ([0, 0], 0.0, 0));
 }

@@ -1,4 +1,4 @@
-//! Truth and classes under lights that have a position.
+//! Truth and classes for lights with a position.
 
 use glam::{DMat4, DVec2, DVec3};
 use shadowfit_truth::{
@@ -11,7 +11,7 @@ use super::shadows::{compare, floor};
 
 const LAMP: DVec3 = DVec3::new(0.7, 3.0, -0.4);
 
-/// A turned and tilted square metre.
+/// Returns the corners of a tilted square of about a metre.
 fn plate(centre: DVec3) -> [DVec3; 4] {
     let (across, along) = (DVec3::new(0.4, 0.1, 0.3), DVec3::new(-0.3, 0.1, 0.4));
     [across + along, across - along, -across - along, along - across].map(|corner| centre + corner)
@@ -33,13 +33,13 @@ fn camera() -> PixelCamera {
     looking_at(DVec3::new(-4.0, 4.0, 5.0), DVec3::Y * 0.5, [240, 160])
 }
 
-/// Where the ray from a light through a point meets the floor.
+/// Returns the point where the ray from a light through a point meets the floor.
 fn on_floor(light: DVec3, point: DVec3) -> DVec2 {
     let met = light + (point - light) * (light.y / (light.y - point.y));
     DVec2::new(met.x, met.z)
 }
 
-/// Whether a point is in a convex polygon that is larger by `slack` on all sides.
+/// Returns whether a point is in a convex polygon that is enlarged by `slack` on all sides.
 fn is_in_polygon(corners: &[DVec2], point: DVec2, slack: f64) -> bool {
     let sides = corners.iter().zip(corners.iter().cycle().skip(1));
     let middle = corners.iter().sum::<DVec2>() / corners.len() as f64;
@@ -56,11 +56,11 @@ fn a_plates_shadow_has_its_corners_where_rays_from_the_lamp_through_its_own_meet
     let corners = plate.map(|corner| on_floor(LAMP, corner));
     let truth = truth_of(&scene(plate), &camera(), lamp(LAMP));
     let decided = compare(&truth, |point, slack| {
-        // The upper side of the plate itself is lit; its lower one faces away.
+        // The upper side of the plate itself is lit. Its lower side faces away.
         point.position.y > 0.1 || !is_in_polygon(&corners, DVec2::new(point.position.x, point.position.z), slack)
     });
     assert!(decided.iter().all(|count| *count > 600), "{decided:?}");
-    // A sun in the direction of the lamp seen from the plate throws a shadow half as large.
+    // A sun in the direction of the lamp, seen from the plate, casts a shadow half as large.
     let sun = truth_of(&scene(plate), &camera(), TruthLight::sun((LAMP - DVec3::new(0.2, 1.2, 0.1)).normalize()));
     let dark = |truth: &Truth| truth.points.iter().flatten().filter(|point| point.verdict() == Some(false)).count();
     assert!(dark(&sun) * 3 < dark(&truth) * 2, "{} and {}", dark(&sun), dark(&truth));
@@ -101,7 +101,7 @@ fn occluders_lie_on_the_way_from_the_point_to_the_lamp() {
         let Some(point) = rays.point(pixel).filter(|point| point.is_judged) else { continue };
         for occluder in rays.occluders(pixel, &point) {
             let (way, part) = (LAMP - point.position, occluder.position - point.position);
-            assert!(part.reject_from(way).length() < 1e-9, "{} is beside the way", occluder.position);
+            assert!(part.reject_from(way).length() < 1e-9, "{} is off the line to the lamp", occluder.position);
             assert!((0.0..way.length_squared()).contains(&part.dot(way)) && occluder.distance < way.length());
             met += 1;
         }
@@ -114,7 +114,8 @@ fn points_outside_of_the_lamps_image_are_not_judged() {
     let tracer = Tracer::new(floor());
     let camera = looking_down(2.0, 0.1, [60, 60]);
     let position = DVec3::Y * 2.0;
-    // 90 degrees wide from 2 m: 2 m to each side, and the floor's centres of pixels are at odd multiples of 5 cm.
+    // The image is 90 degrees wide from 2 m, so 2 m to each side. The floor's pixel centres are at odd
+    // multiples of 5 cm.
     for (planes, is_far_enough) in [([0.1, 2.1], true), ([0.1, 1.9], false), ([2.05, 9.0], false)] {
         let image = Some(lamp_image(position, planes));
         let truth = truth_of(&tracer, &camera, TruthLight::Spot { position, image });
@@ -144,8 +145,8 @@ fn a_far_lamp_is_a_sun() {
     assert!(dark > 100 && different <= 2, "{different} of {dark}");
 }
 
-/// 40 by 10 pixels of a decimetre on the floor, under a lamp 4 m over its middle and a roof at 2 m over x < 0 : its
-/// shadow begins at x = 0 too.
+/// A floor of 40 by 10 pixels of 10 cm, under a lamp 4 m over its middle and a roof at 2 m over x < 0. The
+/// roof's shadow also begins at x = 0.
 struct Room {
     tracer: Tracer,
     truth: Truth,
@@ -163,7 +164,7 @@ impl Room {
         Self { tracer, truth }
     }
 
-    /// Judges factors by column.
+    /// Judges factors that are given by column.
     fn judge(&self, factor: impl Fn(usize) -> f32, map: MeasuredMap, depth_clamp: bool) -> Judged {
         let factors: Vec<f32> = (0..400).map(|pixel| factor(pixel % 40)).collect();
         let maps = PictureMaps { maps: &[map], reading: MapReading::ViewDepth, filter_radius: 0.5, depth_clamp };
@@ -171,12 +172,12 @@ impl Room {
     }
 }
 
-/// A map whose image is 8 m wide on the floor, with texels of so many pixels.
+/// Returns a map whose image is 8 m wide on the floor, with texels `pixels_per_texel` pixels wide.
 fn map(pixels_per_texel: u32, planes: [f64; 2]) -> MeasuredMap {
     lamp_map(OVER, planes, 80 / pixels_per_texel)
 }
 
-/// False shadow, false light, hole, edge and wrong, in columns of 40.
+/// Returns false shadow, false light, hole, edge and wrong, in columns of 40.
 fn columns(tally: &PictureTally) -> [u64; 5] {
     [tally.all.false_shadow, tally.all.false_light, tally.all.hole, tally.all.edge, tally.all.wrong].map(|count| {
         assert!(count.is_multiple_of(10), "whole columns");
@@ -190,7 +191,7 @@ fn a_perfect_picture_of_a_lamp_has_no_wrong_pixel() {
     let tally = &judged.tally;
     assert_eq!((tally.all.facing, tally.all.wrong, tally.error, tally.displacement), (400, 0, 0.0, 0.0));
     assert_eq!((tally.transitions, tally.edge_zone, tally.uncovered), (10, 40, 0));
-    // A level map's texels are as large all over a level floor, whatever the perspective.
+    // On a floor parallel to the map, all texels have the same size in any perspective.
     assert!(judged.pixels_per_texel.iter().all(|pixels| (pixels - 1.0).abs() < 1e-4));
 }
 
@@ -216,12 +217,13 @@ fn a_caster_before_the_lamps_near_plane_leaves_a_hole_unless_depth_is_clamped() 
 
 #[test]
 fn a_map_that_is_narrower_than_what_the_lamp_shines_on_leaves_points_uncovered() {
-    // Half as wide: 2 m to each side, of the 2 m that are seen to each side, moved by a metre.
+    // The map is half as wide, 2 m to each side, and moved by a metre. The camera sees 2 m to each side.
     let shifted = DMat4::from_translation(DVec3::X * 1.5) * DMat4::from_scale(DVec3::new(2.0, 2.0, 1.0));
     let shifted = shifted * lamp_image(OVER, IN_IMAGE);
     let map = MeasuredMap::of_spot(&shifted, DVec2::splat(40.0), f64::INFINITY, OVER);
     let judged = Room::new().judge(|_| 1.0, map, true);
-    // Clip x of 2 x / 4 m + 1.5 w leaves -1..=1 at x = -1 m on the floor: the columns from 10 on.
+    // Clip x of 2 x / 4 m + 1.5 w leaves -1..=1 at x = -1 m on the floor, so columns from 10 on are
+    // uncovered.
     assert_eq!(judged.tally.uncovered, 300);
     for (pixel, class) in judged.classes.iter().enumerate().filter(|(pixel, _)| pixel % 40 < 20) {
         let is_covered = judged.map_index[pixel].is_some();

@@ -1,4 +1,4 @@
-//! Pictures whose truth and whose errors are known in closed form, and the same classes from the GPU.
+//! Pictures with truth and errors in closed form, and the same classes from the GPU.
 
 #[cfg(feature = "gpu")]
 mod agreement_gpu;

@@ -1,4 +1,4 @@
-//! What a picture's figures must not depend on: where the world's origin and axes are, and its unit.
+//! Properties that a picture's figures must not depend on: the world's origin, its axes and its unit.
 
 use glam::{DAffine3, DMat4, DQuat, DVec2, DVec3, Vec3};
 use shadowfit_truth::{
@@ -9,14 +9,14 @@ use super::scenes::{PlainMap, cuboid, lamp_image, level, looking_at, map_around,
 
 const LIGHTS: [Light; 2] = [Light::Sun, Light::Lamp];
 
-/// What shines on the scene.
+/// Kind of light on the scene.
 #[derive(Clone, Copy, Debug)]
 enum Light {
     Sun,
     Lamp,
 }
 
-/// A light and its map after the world was transformed by a motion and then to `world`.
+/// Returns a light and its map after the world was transformed by a motion and then to `world`.
 fn light_and_map(light: Light, motion: DAffine3, world: DAffine3) -> (TruthLight, MeasuredMap) {
     let from_world = DMat4::from(world.inverse());
     let toward = DVec3::new(0.5, 0.7, 0.3).normalize();
@@ -43,7 +43,7 @@ fn tally(light: Light, motion: DAffine3, scale: f64) -> PictureTally {
     let turned = |direction: DVec3| motion.transform_vector3(direction);
     let ground = level(0.0, [-15.0, -15.0], [15.0, 16.1]);
     let tower = cuboid(Vec3::new(-0.5, 0.02, -0.4), Vec3::new(0.3, 2.0, 0.5));
-    // Before the map: its shadow is a hole.
+    // The roof is before the map, so its shadow is a hole.
     let roof = level(5.0, [2.0, -6.0], [7.0, 3.0]);
     let triangles = [ground, tower, roof, sphere(Vec3::new(1.5, 1.0, 1.5), 0.6, 24)].concat();
     let moved = triangles.iter().map(|t| t.map(|corner| world.transform_point3(corner.as_dvec3()).as_vec3()));
@@ -61,7 +61,7 @@ fn tally(light: Light, motion: DAffine3, scale: f64) -> PictureTally {
     let (light, map) = light_and_map(light, motion, world);
     let settings = TruthSettings { ray_offset: 1e-3 * scale, ..TruthSettings::of_light(light) };
     let truth = Truth::trace(&tracer, &camera, &settings, &Truth::seen_by_rays(&tracer, &camera));
-    // Shadows that are shifted in the picture, with stripes: wrong in every way.
+    // Shadows shifted in the picture, with stripes, give every kind of error.
     let factors: Vec<f32> = (0..camera.pixels())
         .map(|pixel| {
             let shifted = truth.verdict(pixel.saturating_sub(12)).unwrap_or(true);
@@ -72,12 +72,12 @@ fn tally(light: Light, motion: DAffine3, scale: f64) -> PictureTally {
     judge(&tracer, &truth, &maps, &factors, |_| true).tally
 }
 
-/// Asserts that every column is the same to `tolerance` per cent of the picture (or per cent of its
-/// own value, where it is no share).
+/// Asserts that every column is the same to `tolerance` per cent of the picture, or per cent of its own value
+/// if it is not a share.
 fn assert_same(name: &str, wanted: &PictureTally, found: &PictureTally, tolerance: f64) {
     for ((column, wanted), (_, found)) in wanted.columns().into_iter().zip(found.columns()) {
         if wanted.is_nan() && found.is_nan() {
-            continue; // Nothing there to be measured, such as crawl in a single picture.
+            continue; // Not measured, such as crawl in a single picture.
         }
         let unit = if column.ends_with('%') { 1.0 } else { wanted.abs() / 100.0 };
         assert!((found - wanted).abs() <= tolerance * unit, "{name}: {column} is {found}, not {wanted}");
@@ -101,8 +101,8 @@ fn a_unit_that_is_a_power_of_two_changes_no_pixel() {
 
 #[test]
 fn a_unit_of_centimetres_or_kilometres_changes_figures_by_rounding_alone() {
-    // Pixels on edges of shadows and triangles: less than one in a thousand. Quantiles are in bins
-    // of half a per cent.
+    // Pixels on edges of shadows and triangles change: fewer than one in a thousand. Quantiles are in bins of
+    // half a per cent.
     for (light, scale) in LIGHTS.into_iter().flat_map(|light| [0.01, 100.0, 1000.0].map(|scale| (light, scale))) {
         assert_same("scaled", &plain(light), &tally(light, DAffine3::IDENTITY, scale), 0.6);
     }
@@ -112,7 +112,7 @@ fn a_unit_of_centimetres_or_kilometres_changes_figures_by_rounding_alone() {
 fn a_world_that_is_turned_and_moved_has_the_same_figures() {
     let turn = DQuat::from_axis_angle(DVec3::new(0.3, 0.8, -0.4).normalize(), 2.0);
     let motion = DAffine3::from_rotation_translation(turn, DVec3::new(30.0, -12.0, 50.0));
-    // A left-handed world: everything mirrored, the winding with it.
+    // A left-handed world: everything is mirrored, including the winding.
     let mirror = DAffine3::from_scale(DVec3::new(-1.0, 1.0, 1.0));
     for light in LIGHTS {
         assert_same("moved", &plain(light), &tally(light, motion, 1.0), 0.6);

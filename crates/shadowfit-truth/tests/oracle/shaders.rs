@@ -1,4 +1,5 @@
-//! The WGSL of the compute passes: valid with what every WebGPU device has, and laid out as the Rust that fills it.
+//! The WGSL of the compute passes: valid on every WebGPU device, and laid out like the Rust types that fill
+//! it.
 
 use naga::TypeInner;
 use naga::valid::Capabilities;
@@ -88,6 +89,10 @@ fn the_tally_has_the_size_and_offsets_of_its_wgsl_struct() {
             crawl_different,
             error_low,
             error_high,
+            light_low,
+            light_high,
+            light_error_low,
+            light_error_high,
             bins
         }
     );

@@ -1,4 +1,4 @@
-//! Truth against shadows in closed form.
+//! The truth compared with shadows in closed form.
 
 use glam::{DVec3, Vec2, Vec3};
 use shadowfit_truth::{
@@ -7,8 +7,8 @@ use shadowfit_truth::{
 
 use super::scenes::{Triangles, cuboid, level, looking_at, looking_down, quad, sphere};
 
-/// Length by which a drawing may be off before a pixel is decided: twice the millimetre by which
-/// shadow rays start above the surface, and as much again for slanting light.
+/// Length by which the closed form may be off before a pixel counts as decided: twice the millimetre by which
+/// shadow rays start above the surface, and the same again for slanting light.
 pub(crate) const SLACK: f64 = 4e-3;
 
 pub(crate) fn floor() -> Triangles {
@@ -19,9 +19,9 @@ fn sun() -> DVec3 {
     DVec3::new(0.5, 0.7, 0.3).normalize()
 }
 
-/// Compares the truth of every pixel that faces the light with `lit`, which answers for a point and
-/// a slack (a length that makes what casts larger), and returns how many pixels were decided as
-/// shadowed and as lit. Pixels that the slack decides are left out.
+/// Compares the truth of every pixel that faces the light with `lit`, a function of a point and a slack (a
+/// length that enlarges the casters). Returns the number of pixels decided as shadowed and as lit. Pixels
+/// whose result depends on the slack are skipped.
 pub(crate) fn compare(truth: &Truth, lit: impl Fn(&TruthPoint, f64) -> bool) -> [usize; 2] {
     let mut decided = [0, 0];
     for (pixel, point) in truth.points.iter().enumerate() {
@@ -43,7 +43,7 @@ fn traced(tracer: &Tracer, eye: DVec3, to_light: DVec3) -> Truth {
     Truth::trace(tracer, &camera, &TruthSettings::new(to_light), &seen)
 }
 
-/// Whether a ray from beyond the surface meets a box that is larger by `slack` on all sides.
+/// Returns whether a ray from beyond the surface meets a box that is enlarged by `slack` on all sides.
 fn meets_box(origin: DVec3, direction: DVec3, min: DVec3, max: DVec3, slack: f64) -> bool {
     let [a, b] = [min - slack, max + slack].map(|corner| (corner - origin) / direction);
     a.max(b).min_element() >= a.min(b).max_element().max(0.0)
@@ -55,7 +55,7 @@ fn the_shadow_of_a_box_on_a_plane_is_where_its_slabs_say() {
     let tracer = Tracer::new([floor(), cuboid(min.as_vec3(), max.as_vec3())].concat());
     let truth = traced(&tracer, DVec3::new(-4.0, 4.0, 5.0), sun());
     let decided = compare(&truth, |point, slack| {
-        // The box is convex: its own facing sides are lit.
+        // The box is convex, so its own facing sides are lit.
         point.position.y > 0.1 || !meets_box(point.position, sun(), min, max, slack)
     });
     assert!(decided.iter().all(|count| *count > 600), "{decided:?}");
@@ -66,7 +66,7 @@ fn the_shadow_of_a_sphere_is_that_of_its_radius_within_the_tessellation() {
     let (centre, radius, rings) = (DVec3::new(0.2, 1.5, -0.3), 1.0, 64);
     let tracer = Tracer::new([floor(), sphere(centre.as_vec3(), radius as f32, rings)].concat());
     let truth = traced(&tracer, DVec3::new(-4.0, 4.0, 5.0), sun());
-    // The corners are on the sphere, and the middle of a quad's diagonal is this far below it.
+    // The corners are on the sphere. The middle of a quad's diagonal is this far below it.
     let sagitta = radius * (1.0 - (core::f64::consts::PI / f64::from(rings) / 2f64.sqrt()).cos());
     assert!(sagitta < SLACK, "{sagitta}");
     let decided = compare(&truth, |point, slack| {
@@ -91,7 +91,7 @@ fn stairs_shadow_the_treads_below_as_far_as_their_corners_reach() {
         [tread, if step + 1 < steps { wall(next) } else { Triangles::new() }].concat()
     });
     let tracer = Tracer::new(stairs);
-    // Toward the light is up the stairs, so that each step stands in the light of those below.
+    // The light comes from up the stairs, so each step can shadow lower ones.
     let to_light = DVec3::new(1.0, 0.6, 0.0).normalize();
     let camera = looking_at(DVec3::new(-1.0, 4.0, 0.1), DVec3::new(1.6, 1.0, 0.0), [240, 160]);
     let seen = Truth::seen_by_rays(&tracer, &camera);
@@ -145,15 +145,15 @@ fn the_penumbra_of_a_straight_edge_is_the_share_of_the_sun_beside_it() {
     let truth = Truth::trace(&tracer, &camera, &settings, &Truth::seen_by_rays(&tracer, &camera));
     let (mut sum, mut greatest, mut penumbra) = (0.0f64, 0.0f64, 0);
     for point in truth.points.iter().flatten() {
-        // The edge cuts the sun's disc this far from its middle, in radii.
+        // Distance of the edge across the sun's disc from its middle, in radii.
         let cut = ((point.position.x / (height - settings.ray_offset)).atan() / radius).clamp(-1.0, 1.0);
         let share = 0.5 + (cut * (1.0 - cut * cut).sqrt() + cut.asin()) / core::f64::consts::PI;
         let error = f64::from(point.lit) - share;
         (sum, greatest) = (sum + error, greatest.max(error.abs()));
         penumbra += usize::from(cut.abs() < 1.0);
     }
-    // A line that cuts n well-spread points errs by about n^(-3/4), 1.6% here; three times that for
-    // the worst of a thousand pixels. The disc is flat to radius², 0.3%.
+    // A line that cuts n well-spread points errs by about n^(-3/4), 1.6% here. The bound is three times that,
+    // for the worst of a thousand pixels. The disc is flat to radius², 0.3%.
     assert!(penumbra > 500 && greatest < 0.045, "{greatest} over {penumbra}");
     assert!((sum / penumbra as f64).abs() < 0.003, "{sum} over {penumbra}");
 }

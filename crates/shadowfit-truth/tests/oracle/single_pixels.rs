@@ -1,4 +1,4 @@
-//! Pixels that are judged alone, and pictures that are given up: the same rules as for whole pictures.
+//! Pixels that are judged alone, and pictures that are cancelled: the same rules as for whole pictures.
 
 use core::sync::atomic::{AtomicUsize, Ordering};
 
@@ -10,7 +10,8 @@ use shadowfit_truth::{
 
 use super::scenes::{cuboid, lamp_image, lamp_map, level, looking_at, shadow_map, sphere};
 
-/// A tower, a ball and a roof that the map does not hold, and shadows that are shifted and striped: wrong in every way.
+/// A tower, a ball and a roof that the map does not hold, with shifted and striped shadows: every kind of
+/// error.
 struct Picture {
     tracer: Tracer,
     truth: Truth,
@@ -42,7 +43,7 @@ impl Picture {
     }
 }
 
-/// A lamp over the scene.
+/// Returns a lamp over the scene.
 fn lamp() -> TruthLight {
     let position = DVec3::new(4.0, 8.0, 2.4);
     TruthLight::Spot { position, image: Some(lamp_image(position, [4.0, 40.0])) }
@@ -105,7 +106,7 @@ fn a_picture_that_is_given_up_is_left_at_once_and_one_that_is_not_is_the_same() 
     assert_eq!(trace(&|| true).as_ref(), Some(truth));
     let whole = judge(tracer, truth, &maps, factors, |_| true);
     assert_eq!(
-        judge_while(tracer, truth, &maps, factors, |_| true, || true).expect("not given up").classes,
+        judge_while(tracer, truth, &maps, factors, |_| true, || true).expect("not cancelled").classes,
         whole.classes
     );
     let asked = AtomicUsize::new(0);

@@ -1,4 +1,4 @@
-//! The GPU's sums against those of its own texture of classes, and against the CPU's.
+//! The GPU's sums, compared with its own texture of classes and with the CPU's sums.
 
 use glam::{DVec3, Vec3};
 use shadowfit_testing::{TestGpu, test_gpu};
@@ -10,10 +10,10 @@ use shadowfit_truth::{
 use super::agreement_gpu::{Picture, boxes, seen_texture, sun};
 use super::scenes::{PlainMap, map_around};
 
-/// A bin of pixels per texel, in octaves.
+/// Width of a bin of pixels per texel, in octaves.
 const BIN: f64 = 1.0 / 32.0;
 
-/// A device, a scene on it, and what judges there.
+/// A device with a scene and a judge.
 struct Bench {
     device: wgpu::Device,
     queue: wgpu::Queue,
@@ -22,7 +22,7 @@ struct Bench {
     seen: wgpu::TextureView,
 }
 
-/// A picture that both have judged.
+/// A picture that both the CPU and the GPU have judged.
 struct Both {
     truth: Truth,
     judged: Judged,
@@ -31,7 +31,7 @@ struct Both {
     tally: GpuTally,
 }
 
-/// The maps of the frame before, and what they show.
+/// The maps of the previous frame, and their factors.
 struct Before<'a> {
     maps: &'a [MeasuredMap],
     eye: DVec3,
@@ -49,7 +49,7 @@ impl Bench {
         Self { device, queue, tracer, judge, seen }
     }
 
-    /// A bench whose picture shows nothing but the scene, lit everywhere.
+    /// Creates a bench whose picture shows only the scene, lit everywhere.
     fn lit(picture: &Picture) -> Self {
         let seen = Truth::seen_by_rays(&picture.tracer, &picture.camera);
         let lit = vec![1.0; seen.len()];
@@ -82,7 +82,7 @@ impl Bench {
         self.judge.take(&self.device).expect("a device that is there")
     }
 
-    /// The picture's number, if its sums come back.
+    /// Returns the picture's number, if its sums have come back.
     fn take_number(&mut self) -> Option<u64> {
         self.take().map(|tally| tally.picture)
     }
@@ -118,7 +118,7 @@ impl Both {
         Self { truth, judged, factors, pixels, tally }
     }
 
-    /// Pixels that the GPU judged.
+    /// Returns the pixels that the GPU judged.
     fn facing(&self) -> impl Iterator<Item = usize> {
         (0..self.pixels.len()).filter(|pixel| self.pixels[*pixel].class != Class::NotJudged)
     }
@@ -127,7 +127,8 @@ impl Both {
         self.facing().filter(|pixel| is_counted(&self.pixels[*pixel])).count() as u64
     }
 
-    /// Asserts that the tally is that of the texture of classes: exactly where the texture says all.
+    /// Asserts that the tally matches the texture of classes, exactly where the texture holds all of the
+    /// information.
     fn assert_sums_of_texture(&self, name: &str) {
         let tally = &self.tally;
         let of = |class: Class| self.count(|pixel| pixel.class == class);
@@ -147,10 +148,23 @@ impl Both {
             })
             .sum();
         assert!((tally.error - error).abs() <= 1e-5 * tally.all.facing as f64, "{name}: {} {error}", tally.error);
+        // The cosines come from the truth on the CPU, which may find another surface at a few pixels.
+        let light = |weight: &dyn Fn(usize) -> f64| -> f64 {
+            let facing = |pixel: usize| self.truth.points[pixel].map_or(0.0, |point| point.facing);
+            self.facing().map(|pixel| facing(pixel) * weight(pixel)).sum()
+        };
+        let error_of = |pixel: usize| {
+            let factor = if self.factors[pixel].is_nan() { 0.0 } else { self.factors[pixel].clamp(0.0, 1.0) };
+            (f64::from(factor) - f64::from(u8::from(self.pixels[pixel].is_lit))).abs()
+        };
+        let sums = [(tally.light, light(&|_| 1.0)), (tally.light_error, light(&error_of))];
+        for (found, wanted) in sums {
+            assert!((found - wanted).abs() <= 1e-4 * tally.all.facing as f64, "{name}: light {found}, not {wanted}");
+        }
         self.assert_texels_of_texture(name);
     }
 
-    /// The same for pixels per texel, of the pixels that the CPU calls not grazing.
+    /// Asserts the same for pixels per texel, of the pixels that are not grazing on the CPU.
     fn assert_texels_of_texture(&self, name: &str) {
         let is_grazing = |pixel: usize| self.truth.points[pixel].is_some_and(|point| point.facing < 0.05);
         let mut bins = vec![0u64; 1024];
@@ -159,10 +173,10 @@ impl Both {
         for pixel in self.facing().filter(|pixel| !is_grazing(*pixel)) {
             let pixels_per_texel = f64::from(self.pixels[pixel].pixels_per_texel);
             if self.pixels[pixel].map_index.is_some() {
-                // Bins begin half a step early, which is where the texture's values round to the same step.
+                // Bins begin half a step early, where the texture's values round to the same step.
                 let bin = ((pixels_per_texel.log2() + 1e-4) / BIN).floor() + 512.0;
                 bins[bin.clamp(0.0, 1023.0) as usize] += 1;
-                // The texture has a step of 1 for the values on either side of it.
+                // The texture has one step for the values on either side of 1.
                 undersampled[0] += u64::from(pixels_per_texel > 1.001);
                 undersampled[1] += u64::from(pixels_per_texel > 0.999);
             }
@@ -172,7 +186,8 @@ impl Both {
         assert!((undersampled[0]..=undersampled[1]).contains(&found), "{name}: {found} {undersampled:?}");
     }
 
-    /// Asserts that all figures are the CPU's as far as the two agree about classes: to 0.5% of the pixels.
+    /// Asserts that all figures match the CPU's to 0.5% of the pixels, within which the two agree about
+    /// classes.
     fn assert_figures_of_cpu(&self, name: &str) {
         let tally: &PictureTally = &self.judged.tally;
         let (found, wanted) = (self.tally.figures().expect("figures"), tally.figures().expect("figures"));
@@ -186,6 +201,7 @@ impl Both {
             (found.edge_zone, wanted.edge_zone),
             (found.uncovered, wanted.uncovered),
             (found.mean_error, wanted.mean_error),
+            (found.light_error, wanted.light_error),
             (found.grazing, wanted.grazing),
             (found.grazing_wrong, wanted.grazing_wrong),
             (found.undersampled.unwrap_or(-1.0), wanted.undersampled.unwrap_or(-1.0)),
@@ -201,7 +217,7 @@ impl Both {
     }
 }
 
-/// Factors between 0 and 1 with the same verdicts, and some that are out of range or no numbers.
+/// Factors between 0 and 1 with the same verdicts, and some that are out of range or NaN.
 fn uneven(factors: &[f32]) -> Vec<f32> {
     let odd = |(pixel, factor): (usize, &f32)| match pixel % 11 {
         0 if *factor == 0.0 => f32::NAN,
@@ -216,7 +232,7 @@ fn picture() -> Picture {
     Picture::new(boxes(), DVec3::new(-4.0, 3.0, 5.0), sun())
 }
 
-/// The picture from as many pixels.
+/// Returns the picture at another size.
 fn sized(size: [u32; 2]) -> Picture {
     let mut picture = picture();
     picture.camera.size = size;
@@ -243,7 +259,8 @@ fn the_tally_is_the_sum_of_the_classes_and_has_the_cpu_s_figures() {
 
 #[test]
 fn all_of_the_classes_are_in_the_sums_of_pictures_of_any_size() {
-    // Below, at and above the squares of 32 pixels that a workgroup sums, and one pixel that sees the ground.
+    // Sizes below, at and above the squares of 32 pixels that a workgroup sums, and one pixel that shows the
+    // ground.
     for size in [[37, 23], [1, 1], [32, 32], [65, 1], [1, 65], [320, 180]] {
         let both = Both::new(&sized(size), None);
         both.assert_sums_of_texture(&format!("{size:?}"));
@@ -270,7 +287,7 @@ fn a_picture_in_which_nothing_is_judged_has_no_figures() {
     assert_eq!((tally.picture, tally.all.facing, tally.figures()), (1, 0, None));
 }
 
-/// The picture with maps half a metre off, of other widths and splits.
+/// Returns the picture with maps that are moved by half a metre and have other widths and splits.
 fn before_of(seen: &Picture) -> Picture {
     let mut before = picture();
     before.reading = seen.reading;
@@ -347,13 +364,13 @@ fn pictures_that_come_faster_than_their_sums_are_judged_and_not_summed() {
     let measured = picture.measured();
     let maps = picture.picture_maps(&measured);
     let mut bench = Bench::lit(&picture);
-    // None is submitted, so that none is finished.
+    // Nothing is submitted, so no picture is finished.
     let recorded: Vec<_> = (0..10).map(|_| bench.record(&picture, &maps, None).expect("a picture")).collect();
     assert_eq!((bench.judge.pictures(), bench.take()), (10, None));
     bench.queue.submit(recorded);
     bench.finish();
     assert_eq!([bench.take_number(), bench.take_number()], [Some(3), None]);
-    // Its buffers are all free again.
+    // All buffers are free again.
     let next = bench.record(&picture, &maps, None).expect("a picture");
     bench.queue.submit([next]);
     bench.finish();

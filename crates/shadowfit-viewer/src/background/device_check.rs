@@ -10,7 +10,7 @@ use shadowfit_study::{check_device_async, in_background_async, unchecked};
 
 use crate::platform::IS_PAGE;
 
-/// A check that is under way or has ended; nothing while its dialog is closed.
+/// A running or finished check; empty while its dialog is closed.
 #[derive(Debug, Default)]
 pub(crate) struct DeviceCheck {
     report: Option<CheckReport>,
@@ -25,8 +25,8 @@ struct Running {
 }
 
 impl DeviceCheck {
-    /// Begins a check of the adapter in use, on a device of its own, and shows its dialog. While a check is under way, nothing
-    /// changes.
+    /// Starts a check of the current adapter on a separate device, and shows its dialog. Does nothing while a
+    /// check is running.
     pub(crate) fn start(&mut self, gpu: &Gpu) {
         if self.is_running() {
             return;
@@ -37,7 +37,7 @@ impl DeviceCheck {
         let adapter = gpu.adapter.clone();
         let work = move || async move {
             let report = match second_device(adapter).await {
-                // The receiver is gone once the dialog was closed.
+                // The receiver is gone after the dialog is closed.
                 Ok(gpu) => {
                     let tell = &mut |report: &CheckReport| drop(sender.send(report.clone()));
                     check_device_async(&gpu, &flag, tell).await
@@ -51,25 +51,25 @@ impl DeviceCheck {
         self.report = Some(began.map_or_else(|error| without_device(&error.to_string()), |()| unchecked(None)));
     }
 
-    /// Whether a check is under way.
+    /// Returns whether a check is running.
     pub(crate) fn is_running(&self) -> bool {
         self.running.is_some()
     }
 
-    /// Ends the check after the step that it is at.
+    /// Ends the check after its current step.
     pub(crate) fn cancel(&mut self) {
         if let Some(running) = &self.running {
             running.is_cancelled.store(true, Ordering::Relaxed);
         }
     }
 
-    /// Closes the dialog, and drops the result of a check that is under way.
+    /// Closes the dialog, and drops the result of a running check.
     pub(crate) fn close(&mut self) {
         self.cancel();
         (self.report, self.running) = (None, None);
     }
 
-    /// Takes what the check has reported since the last frame.
+    /// Takes the reports since the last frame.
     pub(crate) fn take(&mut self) {
         let Some(running) = &self.running else { return };
         loop {
@@ -80,13 +80,13 @@ impl DeviceCheck {
             }
         }
         self.running = None;
-        // Nothing waits any more after a report. A thread that ended without one has panicked.
+        // After a complete report no check is waiting. A thread that ended without one has panicked.
         if let Some(report) = &mut self.report {
             report.end("the check ended unexpectedly; this is a bug of the viewer");
         }
     }
 
-    /// The report, while its dialog is open.
+    /// Returns the report, while its dialog is open.
     pub(crate) fn report(&self) -> Option<&CheckReport> {
         self.report.as_ref()
     }
@@ -94,14 +94,14 @@ impl DeviceCheck {
 
 /// Opens an adapter again.
 async fn second_device(adapter: wgpu::Adapter) -> Result<Gpu, GpuError> {
-    // A browser's adapter opens one device in its life, and a browser offers one adapter.
+    // A browser's adapter opens a single device, and a browser offers a single adapter.
     if IS_PAGE {
         return Gpu::headless(&AdapterChoice::Any).await;
     }
     Gpu::of_adapter(adapter, &Wanted::default()).await
 }
 
-/// The report where no device could be opened.
+/// Returns the report for a device that could not be opened.
 fn without_device(reason: &str) -> CheckReport {
     let mut report = unchecked(None);
     report.end(reason);

@@ -1,4 +1,4 @@
-//! Loads scenes on a thread, while the window goes on.
+//! Loads scenes on a thread, while the window keeps drawing.
 
 mod progress;
 
@@ -16,17 +16,17 @@ use crate::platform::busy;
 use crate::scene_source::SceneSource;
 use progress::{Progress, READY};
 
-/// A scene that is being loaded.
+/// A scene that is loading.
 pub(crate) struct Loading {
     pub(crate) source: SceneSource,
-    /// The line of a script that asked for it.
+    /// The line of a script that requested it.
     pub(crate) line: Option<String>,
     progress: Arc<Mutex<Progress>>,
     result: Receiver<Result<PreparedScene>>,
     _end: End,
 }
 
-/// Tells the work, when it is dropped, that nobody waits any more.
+/// Cancels the work when it is dropped.
 struct End(Arc<AtomicBool>);
 
 impl Drop for End {
@@ -37,7 +37,7 @@ impl Drop for End {
 }
 
 impl Loading {
-    /// Begins to load. `layout` is that of the scene's materials.
+    /// Starts to load. `layout` is the layout of the scene's materials.
     pub(crate) fn start(source: SceneSource, line: Option<String>, gpu: &Gpu, layout: &wgpu::BindGroupLayout) -> Self {
         let (sender, result) = channel();
         let progress = Arc::new(Mutex::new(Progress::new(Instant::now())));
@@ -47,22 +47,22 @@ impl Loading {
             let is_given_up = Arc::clone(&is_given_up);
             move || async move {
                 if let Some(prepared) = load(&source, &gpu, &layout, &progress, &is_given_up).await {
-                    // The receiver is gone where another scene was asked for.
+                    // The receiver is gone after another scene was requested.
                     let _ = sender.send(prepared);
                 }
             }
         };
-        // Where no thread can be made, the channel is closed, which is reported as the end of the thread.
+        // Without a thread the channel is closed, which is reported as the end of the thread.
         let _ = in_background_async("loading", work);
         Self { source, line, progress, result, _end: End(is_given_up) }
     }
 
-    /// Share that is done, 0..=1.
+    /// Returns the finished share, 0..=1.
     pub(crate) fn share(&self) -> f32 {
         self.progress.lock().unwrap_or_else(PoisonError::into_inner).share(Instant::now())
     }
 
-    /// The scene, once it is loaded.
+    /// Returns the scene, once it is loaded.
     pub(crate) fn take(&self) -> Option<Result<PreparedScene>> {
         match self.result.try_recv() {
             Ok(result) => Some(result),
@@ -75,7 +75,7 @@ impl Loading {
     }
 }
 
-/// Loads a scene; `None` where it was given up. A browser draws frames between the steps.
+/// Loads a scene; `None` if it was cancelled. A browser draws frames between the steps.
 async fn load(
     source: &SceneSource,
     gpu: &Gpu,
@@ -99,7 +99,7 @@ async fn load(
     if is_given_up.load(Ordering::Relaxed) {
         return None;
     }
-    // The viewer loads the scene anew for the device that comes after a lost one.
+    // After a lost device, the viewer loads the scene again for the next one.
     let prepared = gpu.unless_lost(|| PreparedScene::new(gpu, layout, scene))?;
     Some(prepared.map_err(Error::from).with_context(|| source.text()))
 }

@@ -1,4 +1,4 @@
-//! How a sample compares with modern maps: measured on a thread, on a separate device.
+//! The comparison of a sample with modern maps, measured on a thread with a separate device.
 
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
@@ -18,7 +18,7 @@ pub(crate) struct SampleView {
     pub(crate) seconds: f32,
 }
 
-/// A measurement on its way, or the result of the last one.
+/// A running measurement, or the result of the last one.
 #[derive(Debug, Default)]
 pub(crate) struct Measuring {
     result: Option<Receiver<Result<SampleFigures>>>,
@@ -26,7 +26,7 @@ pub(crate) struct Measuring {
 }
 
 impl Measuring {
-    /// Begins a measurement; the result of one that is under way is dropped.
+    /// Starts a measurement, and drops the result of a running one.
     pub(crate) fn start(&mut self, adapter: AdapterChoice, view: SampleView) {
         let (sender, result) = channel();
         let work = move || async move {
@@ -35,7 +35,7 @@ impl Measuring {
                 Ok(gpu) => SampleFigures::measure_async(gpu, sample, &values, &camera, seconds).await,
                 Err(error) => Err(error.into()),
             };
-            // The receiver is gone where another measurement was begun.
+            // The receiver is gone after another measurement was started.
             let _ = sender.send(measured);
         };
         self.lines = match in_background_async("measuring", work) {
@@ -45,7 +45,7 @@ impl Measuring {
         self.result = Some(result);
     }
 
-    /// Whether a measurement is under way.
+    /// Returns whether a measurement is running.
     pub(crate) fn is_running(&self) -> bool {
         self.result.is_some()
     }
@@ -62,13 +62,13 @@ impl Measuring {
         self.result = None;
     }
 
-    /// The result, for the panel.
+    /// Returns the result, for the panel.
     pub(crate) fn lines(&self) -> &[CardFigure] {
         &self.lines
     }
 }
 
-/// Lines of figures, as the panel shows them and the headless mode prints them.
+/// Returns lines of figures, for the panel and for the headless mode.
 pub(crate) fn lines(figures: &SampleFigures) -> Vec<CardFigure> {
     figures.lines().into_iter().map(|(name, value)| CardFigure { name, value }).collect()
 }

@@ -17,12 +17,12 @@ use shadowfit_study::{
 
 use crate::stage::{changes, judged_figures};
 
-/// Size of the pictures that are judged, in pixels: enough for every artefact.
+/// Size of the judged pictures, in pixels: enough for every artefact.
 const SIZE: [u32; 2] = [480, 270];
 
-/// Message while there are no figures.
-const GETTING_READY: &str = "Getting ready: a device of its own, and the scene";
-const ENDING: &str = "Ending the search of the scene before";
+/// Messages before the first figures.
+const GETTING_READY: &str = "Preparing a separate device and the scene";
+const ENDING: &str = "Ending the search for the previous scene";
 
 /// Input of a search.
 #[derive(Debug)]
@@ -35,7 +35,7 @@ pub(crate) struct Task {
     /// Distance above the surface at which shadow rays start, in metres.
     pub(crate) ray_offset: f64,
     pub(crate) views: Vec<View>,
-    /// Whether the technique is that of side B.
+    /// Whether the technique belongs to side B.
     pub(crate) is_of_other: bool,
 }
 
@@ -46,7 +46,7 @@ enum News {
     Done(Box<Result<Tuned>>),
 }
 
-/// A search that has ended.
+/// A finished search.
 #[derive(Debug)]
 struct Outcome {
     technique: Technique,
@@ -77,12 +77,12 @@ enum State {
 #[derive(Debug, Default)]
 pub(crate) struct Tuning {
     state: State,
-    /// Whether the technique from which the search started is that of side B now.
+    /// Whether the initial technique of the search is on side B now.
     pub(crate) is_of_other: bool,
 }
 
 impl Tuning {
-    /// Begins a search, unless one is under way.
+    /// Starts a search, unless one is running.
     pub(crate) fn start(&mut self, task: Task) {
         if self.is_running() {
             return;
@@ -110,14 +110,15 @@ impl Tuning {
         matches!(self.state, State::Running { .. })
     }
 
-    /// Stops the search; the best technique so far is its result.
+    /// Stops the search. The best technique so far is its result.
     pub(crate) fn cancel(&mut self) {
         if let State::Running { is_cancelled, .. } = &self.state {
             is_cancelled.store(true, Ordering::Relaxed);
         }
     }
 
-    /// Forgets the result, and ends a running search without one: its thread and device take a moment.
+    /// Discards the result, and ends a running search without one. Its thread and device may take a moment to
+    /// end.
     pub(crate) fn abandon(&mut self) {
         self.cancel();
         self.discard();
@@ -126,7 +127,7 @@ impl Tuning {
         }
     }
 
-    /// Forgets the result.
+    /// Discards the result.
     pub(crate) fn discard(&mut self) {
         if !self.is_running() {
             self.state = State::Idle;
@@ -161,7 +162,7 @@ impl Tuning {
         };
     }
 
-    /// The search for the panel.
+    /// Returns the state of the search for the panel.
     pub(crate) fn shown(&self) -> Tune<'_> {
         match &self.state {
             State::Idle => Tune::Idle,
@@ -204,10 +205,10 @@ impl Task {
 
 fn outcome(tuned: &Tuned, settings: &Settings) -> Result<Outcome> {
     let figures = |tally: &shadowfit_truth::PictureTally| {
-        let figures = tally.figures().context("nothing in view faces the light")?;
+        let figures = tally.figures().context("no visible surface faces the light")?;
         Ok::<_, anyhow::Error>(judged_figures(&figures, SIZE, 0.0))
     };
-    let before = tuned.steps.first().context("nothing was tried")?;
+    let before = tuned.steps.first().context("no technique was tried")?;
     let technique = tuned.technique.technique;
     Ok(Outcome {
         technique,

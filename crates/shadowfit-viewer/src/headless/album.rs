@@ -15,14 +15,14 @@ use crate::stage::{Stage, compared_with};
 
 /// Number of pictures of a scene.
 pub const PICTURES: usize = 24;
-/// Time of the animation at which the pictures are taken, in seconds.
+/// Animation time of the pictures, in seconds.
 const PICTURE_TIME: f32 = 0.0;
-/// Frames that egui needs until a layout is stable.
+/// Frames that egui needs for a stable layout.
 const SETTLING: u32 = 4;
 
-/// Pictures on their way into a folder.
+/// A picture set being written into a folder.
 struct Album<'a> {
-    /// What is told of each picture that is written.
+    /// Called with each written picture.
     tell: &'a mut dyn FnMut(&Path),
     stage: &'a mut Stage,
     interface: Interface,
@@ -31,9 +31,9 @@ struct Album<'a> {
     canvas: Canvas,
 }
 
-/// Renders the views of a stage into a folder, which is made if it is missing: every view, the inset, two techniques side
-/// by side, each artefact shown, marked and fixed, and the whole interface dark and light. `tell` is called with the path
-/// of each of these [`PICTURES`] files when it is written.
+/// Renders the picture set of a stage into a folder, which is made if missing: every view, the inset, two
+/// techniques side by side, each artefact shown, marked and fixed, and the whole interface dark and light.
+/// Calls `tell` with the path of each of these [`PICTURES`] files when it is written.
 ///
 /// # Errors
 ///
@@ -47,7 +47,7 @@ pub fn render_pictures(stage: &mut Stage, folder: &Path, size: [u32; 2], tell: &
     }
     let canvas = Canvas::new(&stage.gpu().device, size, FORMAT);
     let interface = Interface::new(stage, FORMAT);
-    // Nothing is caught half faded in.
+    // No picture may show an element that is fading in.
     interface.context.all_styles_mut(|style| style.animation_time = 0.0);
     let mut album = Album { tell, stage, interface, folder, size, canvas };
     album.views()?;
@@ -58,7 +58,7 @@ pub fn render_pictures(stage: &mut Stage, folder: &Path, size: [u32; 2], tell: &
 }
 
 impl Album<'_> {
-    /// Every view by its name.
+    /// Saves every view under its name.
     fn views(&mut self) -> Result<()> {
         self.interface.bare = true;
         self.judge_what_shows_it();
@@ -93,7 +93,7 @@ impl Album<'_> {
         Ok(())
     }
 
-    /// Each artefact as it is shown, with its wrong pixels marked, and cured.
+    /// Saves each artefact: shown, with its wrong pixels marked, and fixed.
     fn artefacts(&mut self) -> Result<()> {
         for (artefact, name) in
             [(Artefact::Acne, "acne"), (Artefact::Aliasing, "aliasing"), (Artefact::ClippingHole, "hole")]
@@ -112,13 +112,13 @@ impl Album<'_> {
         Ok(())
     }
 
-    /// Lets views be judged only where they show errors. Without panel no figures are seen, and judging a picture takes
-    /// as long as drawing it, so that the first one comes in half the time.
+    /// Turns off judging for views that do not show it. Without the panel no figures are visible, and judging
+    /// takes as long as drawing, so the first picture is ready in half the time.
     fn judge_what_shows_it(&mut self) {
         self.stage.settings.view.judge = false;
     }
 
-    /// The whole interface.
+    /// Saves the whole interface.
     fn windows(&mut self) -> Result<()> {
         self.interface.bare = false;
         for (theme, name) in [(egui::Theme::Dark, "viewer"), (egui::Theme::Light, "viewer-light")] {
@@ -131,14 +131,15 @@ impl Album<'_> {
         Ok(())
     }
 
-    /// Draws until the layout is stable, and saves.
+    /// Draws until the layout is stable, and saves the frame.
     fn save(&mut self, name: &str) -> Result<()> {
         let saved = Saved::default();
         let shown = InterfaceInput::at_rest(&saved);
         for frame in 0..SETTLING {
             let clock = f64::from(frame) * f64::from(FRAME);
             let (_, layout, _) = self.interface.layout(self.stage, &shown, input(self.size, clock));
-            // Judged pictures come back with the next frame, and a legend lies in its corner in the one after that.
+            // Verdicts arrive with the next frame, and the legend moves into its corner in the frame after
+            // that.
             if (SETTLING - 3..SETTLING - 1).contains(&frame) {
                 self.interface.pictures.draw(self.stage);
             }

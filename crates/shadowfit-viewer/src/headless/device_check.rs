@@ -1,4 +1,4 @@
-//! The check of the graphics device on the command line.
+//! The device check on the command line.
 
 use std::sync::atomic::AtomicBool;
 
@@ -8,8 +8,8 @@ use shadowfit_study::check_device;
 
 use crate::platform::output;
 
-/// Checks the adapter of the command line: prints each check as it ends to the standard error, then the report to the
-/// standard output. Returns whether all that the device can do has passed.
+/// Checks the adapter of the command line. Prints each check to the standard error as it ends, then the
+/// report to the standard output. Returns whether all checks that the device supports have passed.
 ///
 /// # Errors
 ///

@@ -1,4 +1,4 @@
-//! What a terminal shows while pictures are rendered.
+//! Terminal output while pictures are rendered.
 
 use std::path::Path;
 use std::time::Duration;
@@ -9,16 +9,16 @@ use indicatif::{ProgressBar, ProgressStyle};
 use crate::platform::output;
 use crate::stage::Stage;
 
-/// How often the bar tells how much time has passed.
+/// Update interval of the bar.
 const TICK: Duration = Duration::from_millis(250);
 
-/// Tells of pictures while they are rendered: each one's name on the standard output as soon as it is written, and how
-/// long the rest will take on the standard error, if that is a terminal.
+/// Reports progress while pictures are rendered: each file name on the standard output when it is written,
+/// and the remaining time on the standard error if that is a terminal.
 pub(super) struct Progress {
     bar: ProgressBar,
     count: usize,
     written: usize,
-    /// The first error of the lines that were printed.
+    /// First error of printing.
     printed: Result<()>,
 }
 
@@ -43,7 +43,7 @@ impl Progress {
         }
     }
 
-    /// Returns the first error of the lines that were printed.
+    /// Returns the first error of printing.
     pub(super) fn end(mut self) -> Result<()> {
         std::mem::replace(&mut self.printed, Ok(()))
     }

@@ -13,9 +13,8 @@ use crate::keep::picture_file::write_png;
 use crate::platform::output;
 use crate::stage::Stage;
 
-/// Renders the pictures of a sample: the technique as its source has it, without shadows, and beside its comparison,
-/// and each of its variants; or one variant alone, if it is named. Then prints how the sample compares with modern
-/// maps.
+/// Renders the pictures of a sample: the technique as in its source, without shadows, beside its comparison,
+/// and each variant; or only the named variant. Then prints how the sample compares with modern maps.
 pub(super) fn run(
     arguments: &Arguments,
     sample: &'static Sample,
@@ -52,7 +51,7 @@ struct SamplePicture {
     /// Name of the file, without its extension.
     name: String,
     variant: Option<&'static SampleVariant>,
-    /// Options and their values, as command lines say them.
+    /// Options and their values, as on the command line.
     options: Vec<(&'static str, &'static str)>,
 }
 
@@ -62,7 +61,8 @@ impl SamplePicture {
         Self { name: format!("{}-{}", sample.id, variant.id), variant: Some(variant), options: Vec::new() }
     }
 
-    /// Returns the pictures of the technique itself: like its source, beside its comparison, and without shadows.
+    /// Returns the pictures of the technique itself: as in its source, beside its comparison, and without
+    /// shadows.
     fn of_options(sample: &Sample) -> Vec<Self> {
         let mut all = vec![Self { name: sample.id.to_owned(), variant: None, options: Vec::new() }];
         for option in sample.options {
@@ -94,7 +94,7 @@ fn write_picture(stage: &mut Stage, path: &Path, size: [u32; 2]) -> Result<()> {
     write_png(path, size, &pixels, None)
 }
 
-/// A line between both halves of a picture: white beside black, so that it shows on any picture.
+/// Draws a line between both halves of a picture: white beside black, so that it is visible on any picture.
 fn draw_line(pixels: &mut [u8], [width, _]: [u32; 2], split: f32) {
     let column = (split * width as f32) as usize;
     for row in pixels.chunks_exact_mut(width as usize * 4) {

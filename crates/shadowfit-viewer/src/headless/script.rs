@@ -1,4 +1,4 @@
-//! Scripts that are played without a window.
+//! Scripts played without a window.
 
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -14,7 +14,7 @@ use crate::platform::output;
 use crate::stage::Stage;
 use crate::viewer::{Renewals, Start, Viewer};
 
-/// Plays the script of the arguments. The files that it saves are put into the folder.
+/// Plays the script in the arguments. Its files go into the folder.
 pub(super) fn play(arguments: &Arguments, folder: &Path) -> Result<()> {
     let mut session = Session::start(arguments, folder)?;
     while !session.viewer.has_played() && !session.viewer.window_requests.quit {
@@ -23,14 +23,14 @@ pub(super) fn play(arguments: &Arguments, folder: &Path) -> Result<()> {
     session.end()
 }
 
-/// A viewer that plays a script into a canvas.
+/// A viewer that plays a script and draws into a canvas.
 struct Session<'a> {
     arguments: &'a Arguments,
     viewer: Viewer,
     canvas: Canvas,
     /// Size of the canvas, in pixels.
     size: [u32; 2],
-    /// Seconds of the script.
+    /// Time of the script, in seconds.
     clock: f64,
     renewals: Renewals,
     timings: Timings,
@@ -54,7 +54,7 @@ impl<'a> Session<'a> {
         Ok(Self { arguments, viewer, canvas, size, clock: 0.0, renewals: Renewals::default(), timings })
     }
 
-    /// Draws a frame, and waits for background work if the script may wait for it.
+    /// Draws a frame, and yields to background work that the script may be waiting for.
     fn frame(&mut self) -> Result<()> {
         let begin = Instant::now();
         let gpu = self.viewer.stage.gpu().clone();
@@ -82,7 +82,7 @@ impl<'a> Session<'a> {
         Ok(())
     }
 
-    /// Opens a device in place of a lost one.
+    /// Opens a new device after a lost one.
     fn renew(&mut self, why: &str) -> Result<()> {
         self.renewals.next(why)?;
         let gpu = pollster::block_on(Gpu::headless(&self.arguments.adapter()))?;

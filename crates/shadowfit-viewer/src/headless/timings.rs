@@ -1,10 +1,10 @@
-//! The table of `--timings`: the time of each step of a start without a window, and of each line of its script.
+//! The table of `--timings`: the time of each start step without a window, and of each line of the script.
 
 use std::time::{Duration, Instant};
 
 use shadowfit_render::Spent;
 
-/// Times of consecutive steps, which leave no gap between them.
+/// Times of consecutive steps without gaps.
 pub(crate) struct Timings {
     last: Instant,
     steps: Vec<Step>,
@@ -14,7 +14,7 @@ pub(crate) struct Timings {
 struct Step {
     name: String,
     total: Duration,
-    /// Time in which this thread neither slept nor waited for the GPU.
+    /// Time of this thread without sleep and waits for the GPU.
     own: Duration,
     frames: u32,
     slowest: Duration,
@@ -25,14 +25,14 @@ impl Timings {
         Self { last: Instant::now(), steps: Vec::new() }
     }
 
-    /// Adds a step that began with the end of the last one, and ends now.
+    /// Adds a step that started at the end of the last one, and ends now.
     pub(crate) fn step(&mut self, name: &str) {
         let total = self.since_last();
         let (name, own) = (name.to_owned(), total);
         self.steps.push(Step { name, total, own, frames: 0, slowest: Duration::ZERO });
     }
 
-    /// Adds a frame, with all that came after the last one, to the step of this name.
+    /// Adds a frame, with the time since the last one, to the step of this name.
     pub(crate) fn frame(&mut self, name: &str, frame: Spent) {
         let total = self.since_last();
         if self.steps.last().is_none_or(|step| step.name != name) {
@@ -46,7 +46,7 @@ impl Timings {
         step.slowest = step.slowest.max(total);
     }
 
-    /// Returns the table: a row for each step, and one for all of them.
+    /// Returns the table: a row for each step, and one for all steps.
     pub(crate) fn table(&self) -> String {
         let heading = format!("{:>9} {:>9} {:>7} {:>9}  step\n", "total ms", "own ms", "frames", "slowest");
         let sum = |part: fn(&Step) -> Duration| self.steps.iter().map(part).sum();

@@ -1,4 +1,4 @@
-//! The bar above the picture: scenes, views, comparison, undo and the other buttons that are always there.
+//! The bar above the picture: scenes, views, comparison, and other buttons that are always shown.
 
 use egui::{Align, Button, Layout, Ui, containers::menu::MenuButton};
 use shadowfit_classics::SAMPLES;
@@ -18,7 +18,7 @@ pub(super) fn show(ui: &mut Ui, stage: &mut Stage, input: &InterfaceInput<'_>, o
             scenes(ui, stage, input, output);
             ui.separator();
             if stage.draws_sample() {
-                // Views and comparison are those of techniques.
+                // Views and comparison only apply to techniques.
                 return;
             }
             let no_compute = stage.no_compute();
@@ -30,7 +30,7 @@ pub(super) fn show(ui: &mut Ui, stage: &mut Stage, input: &InterfaceInput<'_>, o
                 output.commands.push(command);
             }
             let freeze = Button::selectable(stage.settings.view.freeze_fit, "Freeze");
-            let help = "Keeps the shadow maps where they look now while the camera flies on";
+            let help = "Keeps the current shadow maps while the camera flies on";
             if ui.add(freeze).on_hover_text(with_keys(help, &Command::ToggleFreeze)).clicked() {
                 output.commands.push(Command::ToggleFreeze);
             }
@@ -39,13 +39,13 @@ pub(super) fn show(ui: &mut Ui, stage: &mut Stage, input: &InterfaceInput<'_>, o
     });
 }
 
-/// Least width at which the whole bar fits a line, in points; fingers need more.
+/// Returns the least width at which the whole bar fits into a line, in points. Fingers need more.
 pub(super) const fn least_width(is_touched: bool) -> f32 {
     if is_touched { 1200.0 } else { 1000.0 }
 }
 
-/// The bar of a narrow window: the less used buttons are in a menu. Returns whether the panel is to be opened, by a
-/// button that is there if it `has_drawer`.
+/// Shows the bar of a narrow window, with the less used buttons in a menu. Returns whether to open the panel.
+/// The button for that is shown if `has_drawer`.
 pub(super) fn show_narrow(
     ui: &mut Ui,
     stage: &mut Stage,
@@ -75,7 +75,7 @@ pub(super) fn show_narrow(
     opens
 }
 
-/// The buttons that a narrow bar has no room for.
+/// Shows the buttons that do not fit into a narrow bar.
 fn more(ui: &mut Ui, stage: &Stage, output: &mut InterfaceOutput) {
     let view = &stage.settings.view;
     let of_techniques = [
@@ -100,7 +100,8 @@ fn more(ui: &mut Ui, stage: &Stage, output: &mut InterfaceOutput) {
     });
 }
 
-/// The menu of scenes: built in, opened before, and from a file, with the cameras and suns of the file on show.
+/// Shows the menu of scenes: built-in, recent, and from a file, with the cameras and suns of the current
+/// file.
 fn scenes(ui: &mut Ui, stage: &Stage, input: &InterfaceInput<'_>, output: &mut InterfaceOutput) {
     let open = |output: &mut InterfaceOutput, name: &str| output.commands.push(Command::Open(name.to_owned()));
     MenuButton::new("Scene").ui(ui, |ui| {
@@ -137,7 +138,7 @@ fn scenes(ui: &mut Ui, stage: &Stage, input: &InterfaceInput<'_>, output: &mut I
     });
 }
 
-/// The menus of the file's cameras and suns, where it has any.
+/// Shows the menus of the file's cameras and suns, if it has any.
 fn of_the_file(ui: &mut Ui, stage: &Stage, output: &mut InterfaceOutput) {
     let (scene, settings) = (stage.scene(), &stage.settings);
     if scene.subject.is_some() || (scene.cameras.is_empty() && scene.suns.is_empty()) {
@@ -166,7 +167,7 @@ fn of_the_file(ui: &mut Ui, stage: &Stage, output: &mut InterfaceOutput) {
     sun.show(ui, output);
 }
 
-/// A menu that sets a parameter to the number of a name, or to none.
+/// A menu that sets a parameter to the number of a name, or unsets it.
 struct FileMenu {
     title: &'static str,
     /// Id of the parameter.
@@ -174,7 +175,7 @@ struct FileMenu {
     /// The names, numbered from 1.
     names: Vec<String>,
     chosen: Option<u32>,
-    /// Label and value of no number.
+    /// Label and value of the unset state.
     none: &'static str,
     none_id: &'static str,
 }

@@ -1,5 +1,5 @@
-//! The interface in narrow windows, such as those of phones: the panel is a drawer over the picture, closed at first, and
-//! what a person must not miss of it lies on the picture while it is closed.
+//! The interface in narrow windows, such as on phones: the panel is a drawer over the picture, closed at
+//! first. While it is closed, its important messages are shown over the picture.
 
 use egui::{
     Color32, CornerRadius, Frame, Id, Label, Rect, Role, ScrollArea, Sense, Ui, UiBuilder, Vec2, WidgetInfo, vec2,
@@ -9,23 +9,23 @@ use shadowfit_egui::{Command, Icon, PANEL_WIDTH, ShownArtefact, artefact_card, i
 use super::{Interface, InterfaceInput, InterfaceOutput};
 use crate::stage::Stage;
 
-/// Least width at which picture and panel stand beside each other, in points.
+/// Least width at which picture and panel are beside each other, in points.
 const LEAST_WIDTH: f32 = 700.0;
-/// Share of the width that the drawer takes at most: what is left of the picture closes it.
+/// Greatest share of the width for the drawer. A tap on the rest of the picture closes it.
 const DRAWER: f32 = 0.9;
 /// Distance of notes from the edges of the picture, in points.
 const MARGIN: f32 = 10.0;
-/// Most of the picture's height that notes take.
+/// Greatest share of the picture's height for notes.
 const NOTES: f32 = 0.5;
 
-/// Whether a window of a size, in points, is too narrow for a panel beside the picture.
+/// Returns whether a window of a size, in points, is too narrow for a panel beside the picture.
 pub(super) fn is_narrow(size: Vec2) -> bool {
     size.x < LEAST_WIDTH
 }
 
 impl Interface {
-    /// The panel over everything else, until it is closed: by its button, by a tap beside it, or by what is to be looked
-    /// at in the picture.
+    /// Shows the panel over everything else until it is closed, by its button, by a tap beside it, or by a
+    /// command that shows an artefact.
     pub(super) fn show_drawer(
         &mut self,
         ui: &mut Ui,
@@ -41,7 +41,7 @@ impl Interface {
         ui.painter().rect_filled(window, CornerRadius::ZERO, Color32::from_black_alpha(190));
         let width = PANEL_WIDTH.min(DRAWER * window.width());
         let place = Rect::from_min_max(window.right_top() - vec2(width, 0.0), window.max);
-        // What lies in the drawer between its controls is not beside it.
+        // The space between the controls belongs to the drawer.
         ui.interact(place, Id::unique("drawer"), Sense::click_and_drag())
             .widget_info(|| WidgetInfo::labeled(Role::Pane, true, "Panel"));
         ui.scope_builder(UiBuilder::new().max_rect(place), |ui| {
@@ -62,7 +62,7 @@ impl Interface {
     }
 }
 
-/// The message and the card of the artefact on show, at the top of the picture.
+/// Shows the message and the card of the shown artefact at the top of the picture.
 pub(super) fn show_notes(
     ui: &mut Ui,
     picture: Rect,

@@ -4,14 +4,14 @@ use egui::{ClippedPrimitive, TextureId, TexturesDelta};
 use egui_wgpu::{Renderer, RendererOptions, ScreenDescriptor};
 use shadowfit_render::{Gpu, ReadBack, ReadError, RenderTarget};
 
-/// Paints egui's shapes, and the pictures of the stage as textures among them.
+/// Paints egui's shapes, with the pictures of the stage as textures.
 pub(crate) struct Painter {
     renderer: Renderer,
-    /// Textures that the last layout used for the last time.
+    /// Textures that are no longer used after the last layout.
     unused: Vec<TextureId>,
 }
 
-/// A frame that was laid out, ready to be painted.
+/// A laid out frame, ready to be painted.
 pub(crate) struct Layout {
     pub(crate) jobs: Vec<ClippedPrimitive>,
     pub(crate) pixels_per_point: f32,
@@ -22,7 +22,7 @@ impl Painter {
         Self { renderer: Renderer::new(device, format, RendererOptions::default()), unused: Vec::new() }
     }
 
-    /// A picture as a texture of egui.
+    /// Registers a picture as a texture of egui.
     pub(crate) fn register(&mut self, gpu: &Gpu, picture: &RenderTarget) -> TextureId {
         self.renderer.register_native_texture(&gpu.device, &picture.encoded_view(), wgpu::FilterMode::Nearest)
     }
@@ -33,7 +33,7 @@ impl Painter {
         self.renderer.update_egui_texture_from_wgpu_texture(&gpu.device, &view, filter, texture);
     }
 
-    /// Takes over the textures of a layout, which is to be painted next.
+    /// Uploads the textures of a layout, which is to be painted next.
     pub(crate) fn take(&mut self, gpu: &Gpu, textures: &mut TexturesDelta) {
         for id in self.unused.drain(..) {
             self.renderer.free_texture(&id);
@@ -44,13 +44,13 @@ impl Painter {
             }
         }
         self.unused.extend(&textures.free);
-        // All deltas are applied; egui wants the list cleared.
+        // All deltas are applied. egui requires clearing the list.
         textures.clear();
     }
 
     /// Paints to `target` of `size` pixels.
     pub(crate) fn paint(&mut self, gpu: &Gpu, layout: &Layout, target: &wgpu::TextureView, size: [u32; 2]) {
-        // egui's renderer takes it for granted that a device gives it buffers.
+        // egui's renderer assumes that creating buffers succeeds.
         if gpu.lost().is_some() {
             return;
         }
@@ -73,7 +73,7 @@ impl Painter {
     }
 }
 
-/// A texture that a frame is painted to, to be read.
+/// A texture that a frame is painted to, for reading.
 pub(crate) struct Canvas {
     texture: wgpu::Texture,
     pub(crate) view: wgpu::TextureView,
@@ -81,7 +81,7 @@ pub(crate) struct Canvas {
 }
 
 impl Canvas {
-    /// Of a format of four bytes, red or blue first.
+    /// Makes a canvas of a format of four bytes, red or blue first.
     pub(crate) fn new(device: &wgpu::Device, size: [u32; 2], format: wgpu::TextureFormat) -> Self {
         let texture = device.create_texture(&wgpu::TextureDescriptor {
             label: Some("canvas"),
@@ -97,7 +97,7 @@ impl Canvas {
         Self { texture, view, size }
     }
 
-    /// The pixels, red first, four bytes each, rows from the top.
+    /// Returns the pixels, red first, four bytes each, rows from the top.
     ///
     /// # Errors
     ///
@@ -110,18 +110,18 @@ impl Canvas {
         Ok(pixels)
     }
 
-    /// Begins to read the pixels, in the order of the texture.
+    /// Starts to read the pixels, in the order of the texture.
     pub(crate) fn read_back(&self, gpu: &Gpu) -> ReadBack {
         ReadBack::new(gpu, &self.texture, self.size, 4)
     }
 
-    /// Whether the texture has blue first.
+    /// Returns whether the texture has blue first.
     pub(crate) fn is_blue_first(&self) -> bool {
         self.texture.format().remove_srgb_suffix() == wgpu::TextureFormat::Bgra8Unorm
     }
 }
 
-/// Exchanges blue and red of pixels of four bytes.
+/// Swaps blue and red of pixels of four bytes.
 pub(crate) fn red_first(pixels: &mut [u8]) {
     pixels.chunks_exact_mut(4).for_each(|pixel| pixel.swap(0, 2));
 }

@@ -1,4 +1,4 @@
-//! The place of the picture: the stage's pictures, the bar between two techniques, the view from outside beside it, and
+//! The area of the picture: the stage's pictures, the bar between two techniques, the view from outside, and
 //! the texts over them.
 
 use egui::{
@@ -16,7 +16,7 @@ use crate::stage::Stage;
 
 /// Scroll travel that counts as one notch of the wheel, in points, for devices that scroll smoothly.
 const POINTS_PER_NOTCH: f32 = 50.0;
-/// Width of the picture from outside, as a share of the picture's.
+/// Width of the view from outside, as a share of the picture's width.
 const BESIDE: f32 = 0.36;
 /// Distance of overlays from the edge of the picture, in points.
 const MARGIN: f32 = 12.0;
@@ -28,9 +28,9 @@ const FINGER_GRIP: f32 = 36.0;
 struct Shot {
     target: RenderTarget,
     texture: egui::TextureId,
-    /// Size that its place has, in pixels.
+    /// Size of its place, in pixels.
     wanted: [u32; 2],
-    /// Size of the place that it was made for: it is smaller where the device has no memory for more.
+    /// Size of the place that it was made for. The picture is smaller if the device has too little memory.
     made_for: [u32; 2],
 }
 
@@ -63,11 +63,12 @@ impl Shot {
     }
 }
 
-/// The pictures of the stage: that of one technique or of two, and the view from outside.
+/// The pictures of the stage: of one technique or two, and the view from outside.
 pub(crate) struct Pictures {
     main: Shot,
     beside: Shot,
-    /// Where a finger has asked for the reasons of a pixel, as shares of the picture: it leaves no pointer there.
+    /// Position of the last tap, which explains the pixel there, as shares of the picture. A finger leaves no
+    /// pointer.
     tapped: Option<[f32; 2]>,
 }
 
@@ -77,25 +78,25 @@ impl Pictures {
         Self { main: shot(), beside: shot(), tapped: None }
     }
 
-    /// Makes the pictures anew for the device of a stage that has moved.
+    /// Makes the pictures again for the device of a stage that has moved.
     pub(super) fn move_to(&mut self, stage: &Stage, painter: &mut Painter) {
         for shot in [&mut self.main, &mut self.beside] {
             *shot = Shot { wanted: shot.wanted, ..Shot::new(stage, painter) };
         }
     }
 
-    /// Why the picture is coarser than its place, as a line.
+    /// Returns why the picture is coarser than its place, as a line.
     pub(super) fn problem(&self) -> Option<&'static str> {
         let Shot { target, made_for, .. } = &self.main;
-        (target.size != *made_for).then_some("The picture is coarser than the window: the GPU has no memory for more")
+        (target.size != *made_for).then_some("The picture is coarser than the window: the GPU has too little memory")
     }
 
-    /// Size of the picture, in pixels.
+    /// Returns the size of the picture, in pixels.
     pub(crate) fn size(&self) -> [u32; 2] {
         self.main.wanted
     }
 
-    /// Draws the pictures that are on show.
+    /// Draws the visible pictures.
     pub(crate) fn draw(&mut self, stage: &mut Stage) {
         stage.draw(&self.main.target);
         if stage.settings.view.outside_beside {
@@ -103,8 +104,8 @@ impl Pictures {
         }
     }
 
-    /// Begins to read the picture as it is on show, both halves where two techniques are compared: sRGB pixels, four
-    /// bytes each, rows from the top.
+    /// Starts to read the picture, with both halves of a comparison: sRGB pixels, four bytes each, rows from
+    /// the top.
     pub(crate) fn read_back(&self, stage: &Stage) -> ReadBack {
         self.main.target.read_back(stage.gpu())
     }
@@ -117,7 +118,7 @@ impl Pictures {
         }
     }
 
-    /// Shows the pictures in the whole of `ui`, with a legend where there are figures for it.
+    /// Shows the pictures in the whole of `ui`, with a legend if there are figures for it.
     pub(super) fn show(
         &mut self,
         ui: &mut Ui,
@@ -136,7 +137,7 @@ impl Pictures {
             show_bar(ui, stage, names, rect, output);
         }
         if input.has_scene && stage.draws_sample() {
-            // No view of a technique, no legend.
+            // No view of a technique, so no legend.
         } else if input.has_scene {
             over(ui, stage, figures, rect);
             if stage.settings.view.outside_beside {
@@ -161,7 +162,7 @@ impl Pictures {
             output.pinch = fingers.zoom_delta.max(f32::MIN_POSITIVE).ln();
             self.tapped = None;
         } else if response.dragged() {
-            // A finger takes the picture with it; a mouse turns the head.
+            // A finger drags the picture; a mouse turns the camera.
             let delta = response.drag_delta() * if is_touch { -1.0 } else { ui.pixels_per_point() };
             output.drag = glam::Vec2::new(delta.x, delta.y);
             self.tapped = None;
@@ -183,7 +184,7 @@ impl Pictures {
         output.hover = output.hover.or(self.tapped);
     }
 
-    /// The view from outside, in the upper right corner.
+    /// Shows the view from outside, in the upper right corner.
     fn show_beside(&mut self, ui: &mut Ui, rect: Rect) {
         let width = rect.width() * BESIDE;
         let size = Vec2::new(width, width * 0.62);
@@ -200,7 +201,7 @@ impl Pictures {
     }
 }
 
-/// Names of both halves of the picture, where they show different things.
+/// Returns names of both halves of the picture, if they differ.
 fn halves(stage: &Stage) -> Option<[String; 2]> {
     if stage.draws_sample() {
         return stage.sample_halves();
@@ -211,7 +212,7 @@ fn halves(stage: &Stage) -> Option<[String; 2]> {
     })
 }
 
-/// The bar between both halves of the picture, which can be dragged, and their names.
+/// Shows the bar between both halves of the picture, which can be dragged, and their names.
 fn show_bar(ui: &Ui, stage: &Stage, [left, right]: [String; 2], rect: Rect, output: &mut InterfaceOutput) {
     let x = rect.left() + rect.width() * stage.split;
     let width = if ui.input(egui::InputState::has_touch_screen) { FINGER_GRIP } else { GRIP };
@@ -233,13 +234,13 @@ fn show_bar(ui: &Ui, stage: &Stage, [left, right]: [String; 2], rect: Rect, outp
     label(ui, Pos2::new(x + MARGIN, y), Align2::LEFT_TOP, &right);
 }
 
-/// Size of a place, in pixels.
+/// Returns the size of a place, in pixels.
 fn pixels(ui: &Ui, size: Vec2) -> [u32; 2] {
     let scale = ui.pixels_per_point();
     [size.x, size.y].map(|side| ((side * scale).round() as u32).max(1))
 }
 
-/// Notches that the wheel was turned in this frame.
+/// Returns the notches that the wheel was turned in this frame.
 fn wheel_notches(ui: &Ui) -> f32 {
     ui.input(|input| {
         input.events.iter().fold(0.0, |notches, event| match event {
@@ -252,7 +253,7 @@ fn wheel_notches(ui: &Ui) -> f32 {
     })
 }
 
-/// Shows the legend of the view over the picture.
+/// Shows the legend and notes of the view over the picture.
 fn over(ui: &Ui, stage: &Stage, figures: Option<&Figures>, rect: Rect) {
     let view = &stage.settings.view;
     if let Some(figures) = figures {
@@ -260,16 +261,16 @@ fn over(ui: &Ui, stage: &Stage, figures: Option<&Figures>, rect: Rect) {
     }
     let note = match view.mode {
         ViewMode::Final if !view.shadows => "Shadows are off",
-        // Other techniques place their maps without counting visible points.
+        // Other techniques place their maps without visible demand.
         ViewMode::Demand if !stage.settings.inputs.tell(&stage.settings.technique) => {
-            "These fits are not told of the demand"
+            "These fits do not use visible demand"
         }
         _ => return,
     };
     label(ui, rect.left_top() + Vec2::splat(MARGIN), Align2::LEFT_TOP, note);
 }
 
-/// Progress of loading a scene, or of the search for an artefact.
+/// Shows the progress of loading a scene, or of the search for an artefact.
 fn loading(ui: &mut Ui, input: &InterfaceInput<'_>, rect: Rect) {
     if input.loading.is_none() && !input.is_searching {
         return;
@@ -285,15 +286,15 @@ fn loading(ui: &mut Ui, input: &InterfaceInput<'_>, rect: Rect) {
         } else {
             ui.horizontal(|ui| {
                 ui.spinner();
-                ui.label("Looking for the best view…");
+                ui.label("Searching for the best view…");
             });
         }
     });
-    // The bar moves on its own.
+    // The bar is animated.
     ui.ctx().request_repaint();
 }
 
-/// A line of text on a dark ground, readable on any picture.
+/// Shows a line of text on a dark background, readable on any picture.
 fn label(ui: &Ui, at: Pos2, anchor: Align2, text: &str) {
     let font: FontId = TextStyle::Body.resolve(ui.style());
     let galley = ui.painter().layout_no_wrap(text.to_owned(), font, Color32::WHITE);
@@ -317,7 +318,7 @@ mod tests {
             let place = Rect::from_min_size(Pos2::ZERO, Vec2::splat(side));
             let input = egui::RawInput { screen_rect: Some(place), ..Default::default() };
             let mut output = egui::Context::default().run_ui(input, |ui| loading(ui, &shown, place));
-            // Nothing is painted; egui asks to be told so.
+            // Nothing is painted, but egui requires clearing this.
             output.textures_delta.clear();
         }
     }

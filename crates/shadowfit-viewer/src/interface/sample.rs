@@ -1,4 +1,4 @@
-//! The card of the sample on show, for the panel.
+//! The card of the current sample, for the panel.
 
 use shadowfit_classics::{OptionKind, Sample};
 use shadowfit_egui::{Card, CardChoice, CardControl, CardFigure, CardRow};
@@ -6,9 +6,9 @@ use shadowfit_egui::{Card, CardChoice, CardControl, CardFigure, CardRow};
 use crate::stage::SampleShow;
 
 /// Help text of the button that measures a sample.
-const MEASURE: &str = "Judges this view against rays, as the sample shadows it and as modern maps do.";
+const MEASURE: &str = "Judges this view against rays, with the sample's shadows and with modern maps.";
 
-/// Texts that the card of a sample borrows.
+/// Texts for the card of a sample.
 pub(super) struct Parts {
     sample: &'static Sample,
     shown: Option<usize>,

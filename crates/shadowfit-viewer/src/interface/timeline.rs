@@ -1,4 +1,4 @@
-//! The bar below the picture: the animation, the time of day, and where the camera is.
+//! The bar below the picture: the animation, the time of day, the flying speed and the frame time.
 
 use egui::{Button, DragValue, RichText, Slider, Ui};
 use shadowfit_egui::{Command, Icon, icon_button, rename, with_keys};
@@ -7,7 +7,7 @@ use shadowfit_params::tool::DAY;
 use super::{InterfaceOutput, narrow};
 use crate::stage::Stage;
 
-/// Least change of the time that counts as one, in seconds.
+/// Least change of the time by a user, in seconds.
 const SCRUB_STEP: f32 = 0.006;
 
 pub(super) fn show(ui: &mut Ui, stage: &mut Stage, frame_ms: Option<f32>, output: &mut InterfaceOutput) {
@@ -32,9 +32,9 @@ pub(super) fn show(ui: &mut Ui, stage: &mut Stage, frame_ms: Option<f32>, output
     });
 }
 
-/// The same in two rows, whose sliders take what the rest leaves.
+/// Shows the same in two rows, with sliders that fill the remaining width.
 fn rows(ui: &mut Ui, stage: &mut Stage, frame_ms: Option<f32>, output: &mut InterfaceOutput) {
-    /// Widths of all but the slider of a row, in points.
+    /// Width of each row without its slider, in points.
     const REST: [f32; 2] = [204.0, 208.0];
     let sliders = REST.map(|rest| (ui.available_width() - rest).max(0.0));
     ui.horizontal(|ui| {
@@ -57,7 +57,7 @@ fn frame_time(ui: &mut Ui, frame_ms: Option<f32>) {
     ui.label(RichText::new(frame).weak()).on_hover_text("Time of a whole frame");
 }
 
-/// Play, pause, and the time of the animation.
+/// Shows play, pause, and the time of the animation.
 fn animation(ui: &mut Ui, stage: &mut Stage, output: &mut InterfaceOutput) {
     let Some(duration) = stage.duration() else {
         ui.add_enabled_ui(false, |ui| icon_button(ui, Icon::Play, "Play", "This scene has no animation"));
@@ -74,13 +74,13 @@ fn animation(ui: &mut Ui, stage: &mut Stage, output: &mut InterfaceOutput) {
     let slider = Slider::new(&mut seconds, 0.0..=duration).fixed_decimals(2).suffix(" s").trailing_fill(true);
     let response = ui.add(slider).on_hover_text("Time of the animation; dragging it poses the scene");
     rename(ui, &response, "Time of the animation".to_owned());
-    // A slider rounds its value; that is not a change by the user.
+    // A slider rounds its value, which is not a change by the user.
     if response.changed() && (seconds - now).abs() > SCRUB_STEP {
         output.commands.push(Command::Scrub(seconds));
     }
 }
 
-/// The sun over the day.
+/// Shows the time of day.
 fn day(ui: &mut Ui, stage: &mut Stage, output: &mut InterfaceOutput) {
     let light = &mut stage.settings.light;
     let help = with_keys("Lets the sun move", &Command::ToggleSun);
@@ -95,8 +95,8 @@ fn day(ui: &mut Ui, stage: &mut Stage, output: &mut InterfaceOutput) {
         if is_set { format!("{}:{:02}", minutes / 60, minutes % 60) } else { otherwise.to_owned() }
     };
     let slider = Slider::new(&mut hour, DAY.0..=DAY.1).custom_formatter(clock).trailing_fill(true);
-    let help = "Time of day: sunrise at 6, noon at 12, sunset at 18. The sun of the file, or azimuth and elevation in the panel, \
-                are used until it is moved.";
+    let help = "Time of day: sunrise at 6, noon at 12, sunset at 18. Until you move it, the sun of the file is used, \
+                or azimuth and elevation in the panel.";
     let response = ui.add(slider).on_hover_text(help);
     rename(ui, &response, "Time of day".to_owned());
     if response.changed() {
@@ -108,11 +108,11 @@ fn day(ui: &mut Ui, stage: &mut Stage, output: &mut InterfaceOutput) {
     }
 }
 
-/// How fast the camera flies.
+/// Shows the flying speed.
 fn speed(ui: &mut Ui, stage: &mut Stage) {
     let (least, most) = shadowfit_params::tool::FLYING_SPEEDS;
     let now = stage.settings.camera.speed;
-    // Three digits, and a drag of a point for a hundredth.
+    // Three digits. A drag by a point changes one hundredth.
     let decimals = (1.0 - now.max(least).log10().floor()).clamp(1.0, 6.0) as usize;
     let speed = DragValue::new(&mut stage.settings.camera.speed).range(least..=most).speed(f64::from(now) * 0.01);
     let response =

@@ -1,4 +1,4 @@
-//! Settings as text that starts the viewer again: as a command line, and in screenshots.
+//! Settings as a command line, which starts the viewer with them again.
 
 use std::fmt::Write as _;
 
@@ -9,8 +9,8 @@ use shadowfit_params::{self as params, PARAMETERS};
 use crate::scene_source::SceneSource;
 use crate::stage::SampleShow;
 
-/// The command line that opens a scene with one of its animations and these settings, whatever was saved. `own` are the
-/// settings of the scene alone: only differences from them are written.
+/// Returns the command line that opens a scene with one of its animations and these settings, ignoring saved
+/// state. `own` are the scene's own settings; only differences from them are written.
 pub(crate) fn command_line(
     source: &SceneSource,
     animation: usize,
@@ -41,10 +41,11 @@ pub(crate) fn command_line(
     line
 }
 
-/// The parameters that differ between two settings, by id, with their values in the first: set in this order on the
-/// second, they make it the first. What lies out of its range is written as the nearest value within, which can be read.
+/// Returns the parameters that differ between two settings, by id, with their values in `settings`. Set in
+/// this order, they change `own` into `settings`. A value outside its range is written as the nearest valid
+/// value.
 pub(crate) fn differences(settings: &Settings, own: &Settings) -> Vec<(String, String)> {
-    // Parameters that depend on a choice come after that choice in the table.
+    // In the table, a choice comes before the parameters that depend on it.
     let mut reached = *own;
     let mut differences = Vec::new();
     for parameter in PARAMETERS.iter().filter(|parameter| parameter.is_present(settings)) {
@@ -65,7 +66,7 @@ pub(crate) fn changed(show: &SampleShow) -> impl Iterator<Item = (&'static str, 
     changed.map(|(_, (option, value))| (option.id, SampleValues::text(option, value)))
 }
 
-/// A word as a shell reads it as one.
+/// Quotes a word for a shell.
 fn quoted(word: &str) -> String {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "._-/=,+:".contains(c);
     if !word.is_empty() && word.chars().all(is_plain) {

@@ -1,4 +1,4 @@
-//! What a process that is killed at any moment leaves of the files that it was writing: the old one or the new one.
+//! A process that is killed while writing files leaves the old or the new content of each.
 
 use std::collections::BTreeSet;
 use std::fs::{self, File};
@@ -15,15 +15,15 @@ use super::saved::Saved;
 use super::store::Store;
 use crate::platform::{StateFile, save_file};
 
-/// How often the writer is killed.
+/// Number of times that the writer is killed.
 const KILLS: u64 = 200;
-/// Longest time that it lives after its first files, in microseconds.
+/// Longest life of the writer after its first files, in microseconds.
 const LONGEST_LIFE: u64 = 25_000;
-/// Contents that it writes in turn, each of another length.
+/// Number of contents that it writes in turn, each of a different length.
 const VERSIONS: usize = 3;
-/// Names the writer's folder to it.
+/// Environment variable with the writer's folder.
 const FOLDER: &str = "SHADOWFIT_TEST_WRITES_INTO";
-/// What it says once it has written everything for the first time.
+/// Line that it prints once it has written everything for the first time.
 const READY: &str = "the writer has begun";
 
 fn saved(version: usize) -> Saved {
@@ -43,7 +43,7 @@ fn picture(version: usize) -> ([u32; 2], String) {
 fn write_all(folder: &Path, store: &mut Store, version: usize) {
     store.save(&saved(version)).expect("settings");
     let ([width, height], settings) = picture(version);
-    // Such noise that it is not packed into a few bytes.
+    // Noise, so that the picture cannot be compressed to a few bytes.
     let pixels: Vec<u8> =
         (0..width * height * 4).map(|index| (index.wrapping_mul(2_654_435_761) >> 24) as u8).collect();
     write_png(&folder.join("picture.png"), [width, height], &pixels, Some(&settings)).expect("a picture");
@@ -65,7 +65,7 @@ fn writer() {
     }
 }
 
-/// The versions that the files have, each of which must be whole.
+/// Returns the versions of the files, after checking that each file is complete.
 fn versions(folder: &Path) -> [usize; 3] {
     let which = |is_of: &dyn Fn(usize) -> bool| (0..VERSIONS).find(|version| is_of(*version)).expect("a whole version");
     let (kept, message) = Store::new(StateFile::at(folder.join("viewer.toml"))).load();
@@ -108,7 +108,7 @@ fn a_writer_that_is_killed_200_times_leaves_the_old_files_or_the_new_ones() {
     leaves_nothing_but_its_files(folder.path());
 }
 
-/// What was left unfinished goes with the next writing, once it is old.
+/// Asserts that old unfinished files are removed by the next writing.
 fn leaves_nothing_but_its_files(folder: &Path) {
     let files = || fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").path());
     let an_hour_ago = SystemTime::now() - Duration::from_hours(1);

@@ -1,9 +1,10 @@
-//! What the viewer shows as the fragment of a URL, and back.
+//! Links: the state of the viewer as the fragment of a URL, and back.
 //!
-//! `#v=1&scene=forest&bias.constant=0.75&camera=1,2,-3.5,90,-5`: a key and a value each, of which only what differs from
-//! the scene as it opens by itself is written. What has a dot in its key is a parameter by its id; `b.` before it is of
-//! technique B, `sample.` an option of the sample, `was.` of the settings from before the artefact on show, and `ill.` of
-//! the technique that shows it, where it is fixed. Files have their name alone: no page can open a path.
+//! `#v=1&scene=forest&bias.constant=0.75&camera=1,2,-3.5,90,-5`: keys with a value each. Only differences
+//! from the scene's initial state are written. A key with a dot is a parameter id, optionally with a prefix:
+//! `b.` for technique B, `sample.` for an option of the sample, `was.` for the settings before the shown
+//! artefact, and `ill.` for the technique that shows a fixed artefact. Files are given by name only, since no
+//! page can open a path.
 
 use std::f32::consts::FRAC_PI_2;
 use std::fmt::Write as _;
@@ -20,41 +21,42 @@ use shadowfit_scene::builtin::BuiltinScene;
 
 use crate::scene_source::{OPTION_PREFIX, SceneSource};
 
-/// Version of what the keys mean.
+/// Version of the keys and their meanings.
 const VERSION: u32 = 1;
-/// Prefixes of parameters that are not those of the scene and of technique A.
+/// Prefixes of parameters other than those of the scene and of technique A.
 const OTHER: &str = "b.";
 const WAS: &str = "was.";
 const ILL: &str = "ill.";
-/// Characters that stand for themselves: those that no fragment needs encoded, and that programs which make text into
-/// links do not take for the end of one.
+/// Characters to encode. All others need no encoding in a fragment, and programs that turn text into links do
+/// not take them for the end of a link.
 const ENCODED: &AsciiSet =
     &NON_ALPHANUMERIC.remove(b'-').remove(b'.').remove(b'_').remove(b'~').remove(b',').remove(b'/').remove(b':');
-/// Farthest from the origin that a camera of a link is, in metres: beyond, neighbouring pixels have the same place.
+/// Greatest distance of a link's camera from the origin along each axis, in metres. Beyond it, neighbouring
+/// pixels have the same position.
 const FARTHEST: f64 = 1e12;
-/// Unknown keys that a message names.
+/// Greatest number of unknown keys in a message.
 const MOST_NAMED: usize = 3;
 
 /// Parameters by id, with their values as text.
 pub(crate) type Pairs = Vec<(String, String)>;
 
-/// Everything that a link says.
+/// The contents of a link.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Link {
     pub(crate) scene: LinkedScene,
-    /// Index of the animation that plays.
+    /// Index of the animation to play.
     pub(crate) animation: usize,
     pub(crate) camera: Option<FlyCamera>,
-    /// Time of the animation where it stands still, in seconds.
+    /// Time of a paused animation, in seconds.
     pub(crate) seconds: Option<f32>,
     /// The parameters that differ from the scene's own.
     pub(crate) settings: Pairs,
-    /// The options of the sample that differ from those of its name.
+    /// The options of the sample that differ from its own values.
     pub(crate) sample: Pairs,
-    /// The parameters of technique B that differ from those of A, and the place of the bar; `None` without B.
+    /// The parameters of technique B that differ from A, and the position of the bar; `None` without B.
     pub(crate) other: Option<(Pairs, f32)>,
     pub(crate) artefact: Option<LinkedArtefact>,
-    /// What could not be read and is ignored, for a person to read; not part of the text.
+    /// Messages for the user about ignored parts. Not part of the text.
     pub(crate) notes: Vec<String>,
 }
 
@@ -63,20 +65,20 @@ pub(crate) struct Link {
 pub(crate) enum LinkedScene {
     /// A built-in scene or a sample.
     Known(SceneSource),
-    /// A file by its name, which only a person can open.
+    /// A file by its name, which only the user can open.
     File { name: String, index: Option<usize> },
 }
 
-/// The artefact on show.
+/// The shown artefact.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct LinkedArtefact {
     pub(crate) artefact: Artefact,
     pub(crate) fixed: bool,
-    /// The camera from before it.
+    /// The camera before the artefact.
     pub(crate) before: Option<FlyCamera>,
-    /// The parameters from before it that differ from those of now.
+    /// The parameters before the artefact that differ from the current ones.
     pub(crate) was: Pairs,
-    /// Those of the technique that shows it, where it is fixed.
+    /// The differing parameters of the technique that shows a fixed artefact.
     pub(crate) ill: Pairs,
 }
 
@@ -94,21 +96,21 @@ impl LinkedScene {
         }
     }
 
-    /// What to ask a person for; `None` for a scene that opens by itself.
+    /// Returns a request to the user; `None` for a scene that needs no file.
     pub(crate) fn request(&self) -> Option<String> {
         match self {
             Self::Known(_) => None,
-            Self::File { name, .. } => Some(format!("This link is of {name}: drop that file here")),
+            Self::File { name, .. } => Some(format!("This link needs {name}: drop that file here")),
         }
     }
 }
 
-/// Names of the artefacts, as scripts have them.
+/// Names of the artefacts, as in scripts.
 const ARTEFACTS: [(&str, Artefact); 3] =
     [("acne", Artefact::Acne), ("aliasing", Artefact::Aliasing), ("hole", Artefact::ClippingHole)];
 
 impl Link {
-    /// The fragment, from its `#` on.
+    /// Returns the fragment, including its `#`.
     pub(crate) fn to_fragment(&self) -> String {
         let mut text = format!("#v={VERSION}");
         for (key, value) in self.pairs() {
@@ -118,7 +120,7 @@ impl Link {
         text
     }
 
-    /// All keys and values but the version.
+    /// Returns all keys and values except the version.
     fn pairs(&self) -> Pairs {
         let (scene, file, index) = match &self.scene {
             LinkedScene::Known(source) => (Some(source.text()), None, None),
@@ -149,31 +151,31 @@ impl Link {
         pairs
     }
 
-    /// Reads a fragment, or a URL that has one.
+    /// Parses a fragment, or a URL with one.
     ///
     /// # Errors
     ///
-    /// For a value that its key does not take, with both. Keys that this version does not know are ignored, and
-    /// [noted](Self::notes).
+    /// For an invalid value, with its key. Unknown keys are ignored, and [noted](Self::notes).
     pub(crate) fn parse(text: &str) -> Result<Self> {
         let fragment = text.split_once('#').map_or(text, |(_, fragment)| fragment).trim();
         let mut read = Reader::default();
         for pair in fragment.split('&').filter(|pair| !pair.is_empty()) {
             let (key, value) = pair.split_once('=').unwrap_or((pair, ""));
-            let decoded = |text| percent_decode_str(text).decode_utf8().with_context(|| format!("{pair:?} is no text"));
+            let decoded =
+                |text| percent_decode_str(text).decode_utf8().with_context(|| format!("{pair:?} is not text"));
             let (key, value) = (decoded(key)?, decoded(value)?);
             read.take(&key, &value).with_context(|| format!("the link has {key}={value}"))?;
         }
         read.finish()
     }
 
-    /// Whether it is of a scene.
+    /// Returns whether the link belongs to a scene.
     pub(crate) fn is_of(&self, source: &SceneSource) -> bool {
         self.scene == LinkedScene::of(source)
     }
 }
 
-/// The keys that have a value.
+/// Returns the keys that have a value.
 fn given<const N: usize>(pairs: [(&str, Option<String>); N]) -> Pairs {
     pairs.into_iter().filter_map(|(key, value)| Some((key.to_owned(), value?))).collect()
 }
@@ -182,7 +184,7 @@ fn with_prefix(prefix: &str, pairs: &Pairs) -> impl Iterator<Item = (String, Str
     pairs.iter().map(move |(key, value)| (format!("{prefix}{key}"), value.clone()))
 }
 
-/// A link that is being read.
+/// A link being parsed.
 #[derive(Default)]
 struct Reader {
     link: Link,
@@ -238,7 +240,7 @@ impl Reader {
         };
         match params::set_from_str(&mut Settings::default(), id, value) {
             Err(ParameterError::UnknownId { .. }) => self.unknown.push(key.to_owned()),
-            // It may be there with the other settings of the link.
+            // It may exist with the other settings of the link.
             Ok(()) | Err(ParameterError::NotPresent { .. }) => pairs.push((id.to_owned(), value.to_owned())),
             Err(error) => return Err(error.into()),
         }
@@ -265,17 +267,18 @@ impl Reader {
         if !unknown.is_empty() {
             let dots = if unknown.len() > MOST_NAMED { ", …" } else { "" };
             let named = unknown[..unknown.len().min(MOST_NAMED)].join(", ");
-            link.notes.push(format!("This viewer does not know what the link says of {named}{dots}."));
+            link.notes.push(format!("This viewer does not know these keys of the link: {named}{dots}."));
         }
         Ok(link)
     }
 }
 
-/// Sets parameters in the order of the table: a choice comes before the numbers that only it has.
+/// Sets parameters in table order, so that a choice comes before the parameters that depend on it.
 pub(crate) fn apply(pairs: &Pairs, settings: &mut Settings) {
     for parameter in PARAMETERS {
         if let Some((_, value)) = pairs.iter().rev().find(|(id, _)| id == parameter.id) {
-            // Values were checked as the link was read; what is not there with these settings has no effect.
+            // Values were checked when the link was parsed. A parameter that does not exist under these
+            // settings is ignored.
             let _ = params::set_from_str(settings, parameter.id, value);
         }
     }
@@ -292,7 +295,7 @@ fn scene(name: &str) -> Result<SceneSource> {
 fn artefact(text: &str) -> Result<(Artefact, bool)> {
     let (name, fixed) = match text.split_once(',') {
         Some((name, "fixed")) => (name, true),
-        Some(_) => bail!("give nothing but `fixed` behind the comma"),
+        Some(_) => bail!("only `fixed` may follow the comma"),
         None => (text, false),
     };
     let found = ARTEFACTS.iter().find(|(other, _)| *other == name);
@@ -305,9 +308,9 @@ fn number(text: &str) -> Result<f32> {
     Ok(number)
 }
 
-/// Position in metres, and yaw, pitch and, if there is one, roll in degrees.
+/// Parses position in metres, yaw, pitch and an optional roll in degrees.
 fn camera(text: &str) -> Result<FlyCamera> {
-    let what = "give x, y and z in metres, yaw, pitch and perhaps roll in degrees";
+    let what = "give x, y and z in metres, then yaw, pitch and optionally roll in degrees";
     let numbers = text.split(',').map(|word| word.trim().parse().ok()).collect::<Option<Vec<f64>>>();
     let mut numbers = numbers.context(what)?;
     if numbers.len() == 5 {
@@ -320,16 +323,17 @@ fn camera(text: &str) -> Result<FlyCamera> {
     Ok(FlyCamera { position: DVec3::new(x, y, z), yaw, pitch: pitch.clamp(-FRAC_PI_2, FRAC_PI_2), roll })
 }
 
-/// The text that [`camera`] reads, to the bit.
+/// Returns the text that [`camera`] reads back to the same bits.
 fn camera_text(camera: &FlyCamera) -> String {
     let [x, y, z] = camera.position.to_array();
     let roll = if camera.roll == 0.0 { String::new() } else { format!(",{}", degrees_text(camera.roll)) };
     format!("{x},{y},{z},{},{}{roll}", degrees_text(camera.yaw), degrees_text(camera.pitch))
 }
 
-/// An angle in degrees with the fewest decimals that restore the radians.
+/// Returns an angle in degrees with the fewest decimals that restore the radians.
 fn degrees_text(radians: f32) -> String {
-    /// An f32 has nine significant digits, and its degrees two more than its radians before the point.
+    /// An f32 has nine significant digits. Its degrees have up to two more digits before the point than its
+    /// radians.
     const MOST_DECIMALS: usize = 12;
     let degrees = f64::from(radians).to_degrees();
     let restores = |text: &String| text.parse().is_ok_and(|degrees: f64| degrees.to_radians() as f32 == radians);
@@ -345,7 +349,7 @@ mod tests {
     use crate::keep::command_line::differences;
     use crate::play::monkey::Random;
 
-    /// Settings with some parameters at other values: a number for each, as a share of its range.
+    /// Returns settings with some parameters changed. Each share is a position in the parameter's range.
     fn changed(own: &Settings, shares: &[(usize, f64)]) -> Settings {
         let mut settings = *own;
         for (index, share) in shares {
@@ -358,7 +362,7 @@ mod tests {
             };
             parameter.set(&mut settings, value);
         }
-        // Another kind of softness may begin beyond the range of its number.
+        // After a change of the softness measure, its number may lie outside the range.
         for parameter in PARAMETERS {
             let now = settings;
             parameter.copy(&mut settings, &now);
@@ -457,6 +461,6 @@ mod tests {
         assert_eq!(link.scene, LinkedScene::Known(SceneSource::from_text("plain")));
         let notes = link.notes.join(" ");
         assert!(["later version", "mood", "bias.magic"].iter().all(|word| notes.contains(word)), "{notes}");
-        assert_eq!(Link::parse("").expect("nothing is no error"), Link::default());
+        assert_eq!(Link::parse("").expect("an empty link is valid"), Link::default());
     }
 }

@@ -1,4 +1,4 @@
-//! State that is saved from one start to the next, as a readable text with a version.
+//! State that is saved between starts, as a readable text with a version.
 
 mod merge;
 
@@ -17,12 +17,12 @@ use shadowfit_study::{NamedTechnique, settings_from_toml, settings_to_toml, tech
 
 use crate::scene_source::SceneSource;
 
-/// Version of the file; one of a later version is set aside.
+/// Version of the file. A file of another version is set aside.
 const VERSION: u32 = 1;
-/// Number of files that are remembered.
+/// Number of recent files.
 const MOST_RECENT: usize = 8;
 
-/// Dark or light, as the file says it.
+/// Dark or light, as in the file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Theme {
@@ -52,25 +52,25 @@ impl From<ThemePreference> for Theme {
     }
 }
 
-/// Everything that is saved.
+/// The saved state.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Saved {
     pub(crate) theme: Theme,
-    /// The scene on show; settings and camera belong to it.
+    /// The current scene, to which settings and camera belong.
     pub(crate) scene: SceneSource,
     pub(crate) settings: Settings,
     pub(crate) camera: Option<FlyCamera>,
-    /// The other technique and the place of the bar, where two are compared.
+    /// The second technique of a comparison, and the position of the bar.
     pub(crate) other: Option<(Technique, f32)>,
-    /// Files that were opened, the last one first.
+    /// Recent files, the last one first.
     pub(crate) recent: Vec<PathBuf>,
     pub(crate) bookmarks: Vec<Bookmark>,
     pub(crate) presets: Vec<NamedTechnique>,
-    /// Options of the sample on show, by name, as command lines say them.
+    /// Options of the current sample, by name, as on the command line.
     pub(crate) sample: Vec<(String, String)>,
 }
 
-/// A view of a scene under a number.
+/// A numbered view of a scene.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Bookmark {
     /// Its key, 1 to 9.
@@ -82,7 +82,7 @@ pub(crate) struct Bookmark {
     view: SavedView,
 }
 
-/// Position in metres, angles in degrees.
+/// A view: position in metres, angles in degrees.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct SavedView {
     position: [f64; 3],
@@ -92,7 +92,7 @@ struct SavedView {
     roll: f32,
 }
 
-/// Whether a saved angle can be left out.
+/// Returns whether a saved angle can be left out.
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes references")]
 fn is_zero(angle: &f32) -> bool {
     *angle == 0.0
@@ -106,7 +106,7 @@ impl From<FlyCamera> for SavedView {
 }
 
 impl SavedView {
-    /// `None` where a number is not finite.
+    /// Returns `None` if a number is not finite.
     fn camera(self) -> Option<FlyCamera> {
         let [yaw, pitch, roll] = [self.yaw, self.pitch, self.roll].map(f32::to_radians);
         let position = DVec3::from_array(self.position);
@@ -120,7 +120,7 @@ impl Bookmark {
         Self { key, scene: scene.text(), scene_index: scene.index(), view: camera.into() }
     }
 
-    /// Whether it belongs to a key and a scene.
+    /// Returns whether the bookmark belongs to a key and a scene.
     pub(crate) fn is_of(&self, key: u8, scene: &SceneSource) -> bool {
         (self.key, &self.scene, self.scene_index) == (key, &scene.text(), scene.index())
     }
@@ -150,21 +150,21 @@ struct Head {
     bookmark: Vec<Bookmark>,
 }
 
-/// A text as a key, which values' quotes over several lines cannot be.
+/// Returns a text as a TOML key on one line. Values may be quoted over several lines, keys may not.
 fn key(text: &str) -> Result<String> {
     let line = toml::to_string(&toml::Table::from_iter([(text.to_owned(), toml::Value::from(0))]))?;
     Ok(line.strip_suffix(" = 0\n").context("a key is a line")?.to_owned())
 }
 
 impl Saved {
-    /// Puts a file at the front of those that were opened last.
+    /// Puts a file first in the list of recent files.
     pub(crate) fn remember(&mut self, path: &Path) {
         self.recent.retain(|recent| recent != path);
         self.recent.insert(0, path.to_owned());
         self.recent.truncate(MOST_RECENT);
     }
 
-    /// The text of the file.
+    /// Returns the text of the file.
     pub(crate) fn to_toml(&self) -> Result<String> {
         let head = Head {
             version: VERSION,
@@ -176,7 +176,7 @@ impl Saved {
             camera: self.camera.map(SavedView::from),
             bookmark: self.bookmarks.clone(),
         };
-        let mut text = String::from("# What the shadowfit viewer had when it was last closed.\n\n");
+        let mut text = String::from("# State of the shadowfit viewer when it was last closed.\n\n");
         text.push_str(&toml::to_string(&head)?);
         text.push('\n');
         if !self.sample.is_empty() {
@@ -198,13 +198,13 @@ impl Saved {
         Ok(text)
     }
 
-    /// Reads a text.
+    /// Parses the text of the file.
     pub(crate) fn from_toml(text: &str) -> Result<Self> {
         let mut file: toml::Table = toml::from_str(text)?;
         check_version(&file)?;
         let mut table = |name: &str| match file.remove(name) {
             Some(toml::Value::Table(table)) => Ok(Some(table)),
-            Some(_) => bail!("{name} is no table"),
+            Some(_) => bail!("{name} is not a table"),
             None => Ok(None),
         };
         let (settings, other, presets) = (table("settings")?, table("other")?, table("presets")?);
@@ -219,7 +219,7 @@ impl Saved {
             ..Self::default()
         };
         for (option, value) in sample {
-            let value = value.as_str().with_context(|| format!("sample.{option} is no text"))?;
+            let value = value.as_str().with_context(|| format!("sample.{option} is not text"))?;
             saved.sample.push((option, value.to_owned()));
         }
         if let Some(settings) = settings {
@@ -229,7 +229,7 @@ impl Saved {
             saved.other = Some((read_technique(&other).context("other")?.technique, head.split.unwrap_or(0.5)));
         }
         for (name, preset) in presets.unwrap_or_default() {
-            let table = preset.as_table().with_context(|| format!("presets.{name} is no table"))?;
+            let table = preset.as_table().with_context(|| format!("presets.{name} is not a table"))?;
             let Settings { technique, inputs, .. } =
                 read_technique(table).with_context(|| format!("presets.{name}"))?;
             saved.presets.push(NamedTechnique { name, inputs, ..technique.into() });
@@ -238,7 +238,7 @@ impl Saved {
     }
 }
 
-/// Refuses a file of another version.
+/// Rejects a file of another version.
 fn check_version(file: &toml::Table) -> Result<()> {
     match file.get("version").and_then(toml::Value::as_integer) {
         Some(version) if version == i64::from(VERSION) => Ok(()),
@@ -247,7 +247,7 @@ fn check_version(file: &toml::Table) -> Result<()> {
     }
 }
 
-/// A technique and what its fits are given.
+/// Reads a technique and the inputs of its fits.
 fn read_technique(table: &toml::Table) -> Result<Settings> {
     let mut settings = Settings::default();
     settings_from_toml(table, &mut settings)?;
@@ -258,7 +258,7 @@ fn read_technique(table: &toml::Table) -> Result<Settings> {
 pub(crate) mod tests {
     use super::*;
 
-    /// A state in which everything differs from that of a first start.
+    /// Returns a state that differs from a first start in every part.
     pub(crate) fn saved() -> Saved {
         let camera = FlyCamera { position: DVec3::new(1e5, 2.0, -3.5), yaw: 0.5, pitch: -0.25, roll: 0.75 };
         let mut saved = Saved {

@@ -1,22 +1,23 @@
-//! Keeps the viewer's state from one start to the next.
+//! Stores the viewer's state between starts.
 //!
-//! A first start without a file is ordinary. A damaged file is renamed and reported; nothing overwrites it. Several
-//! viewers may have the file open: one that writes reads first what others wrote, and changes only what it changed itself.
+//! A first start without a file is normal. A damaged file is renamed and reported, never overwritten. Several
+//! viewers may share the file: before writing, a viewer reads the changes of others, and writes only its own
+//! changes over them.
 
 use anyhow::{Context, Result};
 
 use super::saved::Saved;
 use crate::platform::StateFile;
 
-/// The file that everything is saved in.
+/// The file with the saved state.
 #[derive(Clone, Debug)]
 pub(crate) struct Store {
     file: StateFile,
     /// State of this viewer when it last read or wrote the file.
     known: Saved,
-    /// Whether the file has that.
+    /// Whether the file has that state.
     is_written: bool,
-    /// Whether it could not be written the last time.
+    /// Whether the last attempt to write failed.
     failed: bool,
 }
 
@@ -25,10 +26,11 @@ impl Store {
         Self { file, known: Saved::default(), is_written: false, failed: false }
     }
 
-    /// The saved state, and a message for the user. Without a file everything is as in a first start.
+    /// Returns the saved state, and a message for the user. Without a file there is neither.
     pub(crate) fn load(&mut self) -> (Option<Saved>, Option<String>) {
         let Some(name) = self.file.name() else {
-            let message = "Settings are not kept: this user has no home folder. Set HOME, or give a file with --state.";
+            let message = "Settings are not saved: this user has no home folder. Set HOME, or name a file with \
+                   --state.";
             return (None, Some(message.to_owned()));
         };
         match self.file.read().map(parsed) {
@@ -37,16 +39,24 @@ impl Store {
                 (self.known, self.is_written) = (saved.clone(), true);
                 (Some(saved), None)
             }
-            Ok(Some(Err(error))) => (None, Some(set_aside(&mut self.file, &error, "the viewer starts afresh"))),
+            Ok(Some(Err(error))) => (
+                None,
+                Some(set_aside(
+                    &mut self.file,
+                    &error,
+                    "the viewer starts with default \
+                   settings",
+                )),
+            ),
             Err(error) => {
-                let advice = "The viewer starts afresh; give another file with --state.";
+                let advice = "The viewer starts with default settings; name another file with --state.";
                 (None, Some(format!("The saved settings cannot be read: {name}: {error}. {advice}")))
             }
         }
     }
 
-    /// Saves what has changed. Returns a message for the user where there is something new to tell: that it cannot be
-    /// saved, which is tried again the next time, or that it can be again.
+    /// Saves changes. Returns a message for the user only if the result is new: saving failed, and will be
+    /// tried again, or works again.
     pub(crate) fn keep(&mut self, saved: &Saved) -> Option<String> {
         match self.save(saved) {
             Ok(note) => {
@@ -56,17 +66,17 @@ impl Store {
             Err(error) => {
                 let is_known = std::mem::replace(&mut self.failed, true);
                 (!is_known)
-                    .then(|| format!("The settings cannot be saved: {error:#}. The viewer goes on and tries again."))
+                    .then(|| format!("The settings cannot be saved: {error:#}. The viewer continues and tries again."))
             }
         }
     }
 
-    /// Writes what this viewer changed over what is in the file now. Returns a message where that was damaged and has
-    /// been set aside.
+    /// Writes this viewer's changes over the current content of the file. Returns a message if that was
+    /// damaged and has been set aside.
     ///
     /// # Errors
     ///
-    /// If it cannot be written; the old file stays.
+    /// If the file cannot be written. The old file stays.
     pub(crate) fn save(&mut self, saved: &Saved) -> Result<Option<String>> {
         let Some(name) = self.file.name() else { return Ok(None) };
         if self.is_written && *saved == self.known {
@@ -77,7 +87,7 @@ impl Store {
             let (merged, note) = match parsed(there) {
                 None => (saved.clone(), None),
                 Some(Ok(theirs)) => (saved.over(&self.known, theirs), None),
-                Some(Err(error)) => (saved.clone(), Some(set_aside(file, &error, "those of this viewer are saved"))),
+                Some(Err(error)) => (saved.clone(), Some(set_aside(file, &error, "this viewer's settings are saved"))),
             };
             file.write(&merged.to_toml()?)?;
             Ok(note)
@@ -87,14 +97,14 @@ impl Store {
     }
 }
 
-/// Reads the state in a text, if there is a text. Fails if the text makes no sense.
+/// Parses the state in a text, if there is a text. Fails if the text is invalid.
 fn parsed(text: Option<Result<String>>) -> Option<Result<Saved>> {
     text.map(|text| text.and_then(|text| Saved::from_toml(&text)))
 }
 
-/// Sets a damaged file aside, and returns a message about that.
+/// Sets a damaged file aside, and returns a message about it.
 fn set_aside(file: &mut StateFile, error: &anyhow::Error, then: &str) -> String {
-    format!("The saved settings make no sense: {error:#}. {}", file.set_aside(then))
+    format!("The saved settings are invalid: {error:#}. {}", file.set_aside(then))
 }
 
 #[cfg(test)]
@@ -153,10 +163,10 @@ mod tests {
             store.save(&saved()).expect("a new one");
         }
         fs::write(&path, [0xff, 0xfe, 0x00]).expect("written");
-        assert!(Store::new(StateFile::at(path)).load().1.expect("no text").contains("no text"));
+        assert!(Store::new(StateFile::at(path)).load().1.expect("not text").contains("not text"));
     }
 
-    /// Two viewers of the same file, which begin with the same state, and a third one's look at it.
+    /// Two viewers that share a file and start with the same state, and a third one that reads it.
     struct Two {
         folder: tempfile::TempDir,
         stores: [Store; 2],
@@ -207,7 +217,7 @@ mod tests {
             two.states[0].settings.light.file = number;
             two.states[0].settings.light.azimuth = 0.5;
             two.save(0);
-            // The sun below the horizon moved on, and a person changed something else.
+            // The file's sun moved below the horizon, and the user changed something else.
             (two.states[1].settings.light.azimuth, two.states[1].settings.light.elevation) = (0.25, -0.5);
             two.states[1].settings.technique.bias.slope = 2.5;
             two.save(1);

@@ -1,4 +1,4 @@
-//! Undo for every change, by egui's own undoer: a change counts once it has lasted for a moment.
+//! Undo for every change, with egui's undoer: a change counts once it has lasted for a moment.
 
 use egui::util::undoer::Undoer;
 use shadowfit::Technique;
@@ -9,19 +9,20 @@ use shadowfit_render::FlyCamera;
 
 use crate::stage::ArtefactShow;
 
-/// Everything that undo restores: with the camera of the file that is followed, but not the place of a camera that is flown.
+/// State that undo restores. It includes the followed camera of the file, but not the position of a flown
+/// camera.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct State {
     pub(crate) settings: Settings,
-    /// The technique that the first one is compared with.
+    /// The second technique of a comparison.
     pub(crate) other: Option<Technique>,
     pub(crate) artefact: ArtefactShow,
-    /// Values of the sample on show.
+    /// Values of the current sample.
     pub(crate) sample: Option<SampleValues>,
 }
 
 impl State {
-    /// The same without values that change by themselves from frame to frame.
+    /// Returns the state without values that change by themselves from frame to frame.
     fn still(&self) -> Self {
         let mut settings = self.settings;
         if settings.light.animate {
@@ -30,8 +31,8 @@ impl State {
         if settings.light.file.is_some() {
             (settings.light.azimuth, settings.light.elevation) = (0.0, 0.0);
         }
-        // The wheel changes the speed all the time, and flights the height. While a camera of the file is followed, only a
-        // person changes the height.
+        // The wheel changes the speed often, and flights change the height. While a camera of the file is
+        // followed, only the user changes the height.
         settings.camera.speed = 0.0;
         if settings.camera.file.is_none() {
             settings.camera.height = settings.camera.height.map(|_| 1.0);
@@ -39,7 +40,7 @@ impl State {
         Self { settings, ..self.clone() }
     }
 
-    /// Returns this state, but takes from `now` the values that change by themselves. `height` is the last height of a flown
+    /// Returns this state with the self-changing values of `now`. `height` is the last height of a flown
     /// orthographic picture, in metres.
     fn with_motion_of(mut self, now: &Self, height: Option<f32>) -> Self {
         let (light, last) = (&mut self.settings.light, &now.settings.light);
@@ -58,7 +59,7 @@ impl State {
         self
     }
 
-    /// Differences to another state, in a few words.
+    /// Returns the differences from another state in a few words.
     fn difference(&self, other: &Self) -> String {
         let differs = |a: &Settings, b: &Settings| {
             PARAMETERS.iter().filter(|parameter| !parameter.is_equal(a, b)).map(|parameter| parameter.label).collect()
@@ -82,22 +83,22 @@ impl State {
     }
 }
 
-/// The states that can be gone back to.
+/// The stored states.
 #[derive(Debug, Default)]
 pub(crate) struct History {
     undoer: Undoer<State>,
-    /// Names of the changes that undo and redo would concern.
+    /// Names of the next changes to undo and redo.
     undo: Option<String>,
     redo: Option<String>,
     last: Option<State>,
     /// Last height of an orthographic picture without a camera of the file, in metres.
     height: Option<f32>,
-    /// Last place of a flown camera.
+    /// Last view of a flown camera.
     flown: Option<FlyCamera>,
 }
 
 impl History {
-    /// Notes the present state and the camera's place, at a time in seconds.
+    /// Stores the current state and the camera's view, at a time in seconds.
     pub(crate) fn feed(&mut self, seconds: f64, state: &State, place: FlyCamera) {
         let still = state.still();
         let camera = &state.settings.camera;
@@ -112,7 +113,7 @@ impl History {
         }
     }
 
-    /// The state before the last change.
+    /// Returns the state before the last change.
     pub(crate) fn undo(&mut self, now: &State) -> Option<State> {
         let still = now.still();
         let state = self.undoer.undo(&still).cloned()?;
@@ -121,7 +122,7 @@ impl History {
         Some(state.with_motion_of(now, self.height))
     }
 
-    /// The state after the change that was undone.
+    /// Returns the state after the change that was undone.
     pub(crate) fn redo(&mut self, now: &State) -> Option<State> {
         let still = now.still();
         let state = self.undoer.redo(&still).cloned()?;
@@ -130,23 +131,24 @@ impl History {
         Some(state.with_motion_of(now, self.height))
     }
 
-    /// Returns the last place of a flown camera if the way from one state to another leaves a camera of the file.
+    /// Returns the last view of a flown camera if the change from one state to another stops following a
+    /// camera of the file.
     pub(crate) fn flown_again(&self, from: &State, to: &State) -> Option<FlyCamera> {
         let leaves = from.settings.camera.file.is_some() && to.settings.camera.file.is_none();
         self.flown.filter(|_| leaves)
     }
 
-    /// Name of the change that undo would take back.
+    /// Returns the name of the next change to undo.
     pub(crate) fn undo_name(&self) -> Option<&str> {
         self.undo.as_deref()
     }
 
-    /// Name of the change that redo would make.
+    /// Returns the name of the next change to redo.
     pub(crate) fn redo_name(&self) -> Option<&str> {
         self.redo.as_deref()
     }
 
-    /// Names both changes: by going there and back on a copy.
+    /// Names both changes, by undoing and redoing on a copy.
     fn name(&mut self, still: &State) {
         let mut copy = self.undoer.clone();
         self.undo = copy.undo(still).map(|before| before.difference(still));

@@ -1,4 +1,5 @@
-//! A page in a browser. The viewer runs in a worker, and sends the page a message for everything that only pages can do.
+//! A page in a browser. The viewer runs in a worker, and sends the page a message for everything that only a
+//! page can do.
 
 pub(crate) mod files;
 
@@ -37,7 +38,7 @@ pub(crate) fn save_file(path: &Path, bytes: &[u8]) -> Result<()> {
     Ok(())
 }
 
-/// Lets the user choose files. They arrive later, by the calls of the page.
+/// Lets the user choose files. They arrive later through calls of the page.
 pub(crate) fn choose_file() -> Option<Receiver<Option<PathBuf>>> {
     tell("choose", "");
     None
@@ -48,16 +49,16 @@ pub(crate) fn busy(bar: Option<BusyBar>) {
     tell("busy", &bar.map_or(String::new(), |BusyBar { from, to, seconds }| format!("{from} {to} {seconds}")));
 }
 
-/// Returns the bytes of the module's memory.
+/// Returns the size of the module's memory, in bytes.
 #[expect(clippy::unnecessary_wraps, reason = "other systems may not know")]
 pub(crate) fn memory() -> Option<u64> {
     Some(core::arch::wasm32::memory_size(0) as u64 * MEMORY_PAGE)
 }
 
-/// A folder for files that nobody keeps: a page has no folders.
+/// A folder for temporary files. A page has no folders.
 pub(crate) struct TemporaryFolder;
 
-/// Returns a folder for files that nobody keeps.
+/// Returns a folder for temporary files.
 #[expect(clippy::unnecessary_wraps, reason = "folders of other systems may not be writable")]
 pub(crate) fn temporary_folder() -> io::Result<TemporaryFolder> {
     Ok(TemporaryFolder)

@@ -1,4 +1,4 @@
-//! A process with files, threads and dialogs: with a window, or headless.
+//! A process with files, threads and dialogs, with or without a window.
 
 mod state_file;
 
@@ -40,10 +40,10 @@ pub(crate) fn choose_file() -> Option<Receiver<Option<PathBuf>>> {
     std::thread::Builder::new().name("file dialog".to_owned()).spawn(work).ok().map(|_| receiver)
 }
 
-/// Does nothing: the window goes on while a thread works.
+/// Does nothing, since the window keeps drawing while a thread works.
 pub(crate) fn busy(_: Option<BusyBar>) {}
 
-/// Returns the bytes of memory that the process holds, `None` on systems other than Linux.
+/// Returns the memory of the process, in bytes, or `None` on systems other than Linux.
 pub(crate) fn memory() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"))?;

@@ -1,4 +1,5 @@
-//! Effects of a script and of random actions on the viewer in a frame, and the state of the viewer that they depend on.
+//! Effects of a script and of random actions on the viewer in a frame, and the viewer's activity that they
+//! depend on.
 
 use std::path::PathBuf;
 
@@ -7,14 +8,14 @@ use shadowfit_egui::{Chord, Command};
 
 use super::script::Refusal;
 
-/// Something that happens in a frame because a script asks for it.
+/// An event in a frame, caused by a script.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Effect {
     /// Runs a command.
     Run(Command),
     /// Presses (`true`) or releases a key.
     Key(Chord, bool),
-    /// Moves, presses or turns something of the mouse, or types a text.
+    /// Moves the pointer, presses its buttons, turns the wheel, or types a text.
     Input(Event),
     /// Resizes the window, in pixels.
     Resize([u32; 2]),
@@ -22,13 +23,13 @@ pub(crate) enum Effect {
     Drop(PathBuf),
     /// Destroys the graphics device.
     LoseDevice,
-    /// Lets the window's surface refuse the next frame.
+    /// Makes the window's surface refuse the next frame.
     Refuse(Refusal),
     /// Prints a line to the standard error.
     Print(String),
 }
 
-/// What the viewer is busy with, for actions that wait until it is done.
+/// The viewer's current work, for actions that wait for its end.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[expect(clippy::struct_excessive_bools, reason = "each is asked about by an action of its own")]
 pub(crate) struct Activity {

@@ -1,5 +1,6 @@
-//! Random actions: keys, clicks, drags, turns of the wheel, resizes and dropped files, good and hostile. They prove that
-//! the viewer survives them, and measure its memory with the same scene and settings before and after.
+//! Random actions: keys, clicks, drags, turns of the wheel, resizes and dropped files, valid and hostile.
+//! They prove that the viewer survives them, and measure its memory with the same scene and settings before
+//! and after.
 
 use std::path::PathBuf;
 
@@ -13,13 +14,13 @@ use crate::scene_source::SceneSource;
 
 /// Seconds from one action to the next, on average.
 const PACE: f32 = 0.06;
-/// Share of the time after which memory is measured first: by then everything has been made that is made only once.
+/// Share of the time before memory is first measured. By then all one-time allocations are done.
 const WARM_UP: f32 = 0.25;
 /// Sizes of windows, in pixels.
 const SIZES: [[u32; 2]; 6] = [[1280, 720], [640, 360], [960, 600], [1, 1], [333, 777], [1024, 300]];
-/// What the window's surface may refuse a frame with.
+/// Answers of the window's surface that refuse a frame.
 const REFUSALS: [Refusal; 4] = [Refusal::Lost, Refusal::Outdated, Refusal::Timeout, Refusal::Occluded];
-/// Largest file that is dropped, in bytes: larger ones take so long to load that nothing else is tried.
+/// Largest dropped file, in bytes. Larger files would take most of the time to load.
 const LARGEST: u64 = 20_000_000;
 /// Seconds without actions before memory is measured.
 const REST: f32 = 3.0;
@@ -36,7 +37,7 @@ impl Random {
         z ^ (z >> 31)
     }
 
-    /// 0 up to 1.
+    /// Returns a random number from 0 to below 1.
     pub(crate) fn share(&mut self) -> f32 {
         (self.next() >> 40) as f32 / (1_u32 << 24) as f32
     }
@@ -54,17 +55,17 @@ impl Random {
 /// The phases of a run, in order.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Phase {
-    /// Random actions, before memory is measured first.
+    /// Random actions, before the first memory measurement.
     Warm,
-    /// No actions for so many seconds more, then memory is measured.
+    /// No actions for this many more seconds, then memory is measured.
     Resting(f32),
     /// Random actions.
     Wild,
-    /// No actions for so many seconds more, then memory is measured again and the run ends.
+    /// No actions for this many more seconds, then memory is measured again and the run ends.
     Ending(f32),
 }
 
-/// Random actions being played.
+/// A run of random actions.
 #[derive(Debug)]
 pub(crate) struct MonkeyRun {
     random: Random,
@@ -76,7 +77,7 @@ pub(crate) struct MonkeyRun {
     files: Vec<PathBuf>,
     keys: Vec<Chord>,
     held: Vec<Chord>,
-    /// Bytes at the first measurement.
+    /// Memory at the first measurement, in bytes.
     memory: Option<u64>,
 }
 
@@ -103,14 +104,14 @@ impl MonkeyRun {
         }
     }
 
-    /// Plays the actions of this frame; returns whether the run goes on.
+    /// Plays the actions of this frame. Returns whether the run continues.
     pub(crate) fn advance(&mut self, seconds: f32, activity: &Activity, effects: &mut Vec<Effect>) -> bool {
         self.passed += seconds;
         match self.phase {
             Phase::Warm if self.passed >= self.seconds * WARM_UP => self.rest(Phase::Resting(REST), effects),
             Phase::Wild if self.passed >= self.seconds => self.rest(Phase::Ending(REST), effects),
             Phase::Warm | Phase::Wild => self.act(seconds, activity, effects),
-            // The scene that is being loaded is part of the measured memory.
+            // A loading scene is part of the measured memory.
             Phase::Resting(_) | Phase::Ending(_)
                 if activity.is_loading || activity.is_searching || activity.is_tuning => {}
             Phase::Resting(left) if left > 0.0 => self.phase = Phase::Resting(left - seconds),
@@ -127,8 +128,8 @@ impl MonkeyRun {
         true
     }
 
-    /// Releases all keys and goes back to the scene and the settings with which memory is measured: maps alone may take a
-    /// gigabyte.
+    /// Releases all keys, and restores the scene and the settings with which memory is measured, since maps
+    /// alone may take a gigabyte.
     fn rest(&mut self, phase: Phase, effects: &mut Vec<Effect>) {
         effects.extend(self.held.drain(..).map(|chord| Effect::Key(chord, false)));
         effects.push(Effect::Resize(SIZES[0]));
@@ -139,7 +140,7 @@ impl MonkeyRun {
 
     fn act(&mut self, seconds: f32, activity: &Activity, effects: &mut Vec<Effect>) {
         self.next -= seconds;
-        // On a slow machine a frame catches up on the actions that it has missed, up to a limit.
+        // On a slow machine a frame catches up on missed actions, up to a limit.
         for _ in 0..8 {
             if self.next > 0.0 {
                 break;
@@ -166,7 +167,7 @@ impl MonkeyRun {
         }
     }
 
-    /// Presses a key and releases it, at once or later.
+    /// Presses a key, and releases it now or later.
     fn key(&mut self, effects: &mut Vec<Effect>) {
         let Some(chord) = self.random.pick(&self.keys).copied() else { return };
         effects.push(Effect::Key(chord, true));
@@ -177,7 +178,7 @@ impl MonkeyRun {
         }
     }
 
-    /// A drag within one frame, from a place to another.
+    /// Drags from one place to another within one frame.
     fn drag(&mut self, from: [f32; 2], activity: &Activity, effects: &mut Vec<Effect>) {
         let to = self.random.place(activity.size);
         effects.extend([Effect::moved(from), Effect::button(from, true), Effect::moved(to), Effect::button(to, false)]);
@@ -188,17 +189,17 @@ impl MonkeyRun {
         let megabytes = |bytes: u64| bytes as f64 / 1e6;
         match (self.memory, memory()) {
             (Some(before), Some(after)) => format!(
-                "{actions}; memory {:.1} MB after a quarter of it, {:.1} MB at the end, growth {:.1} MB",
+                "{actions}; memory {:.1} MB after a quarter of the time, {:.1} MB at the end, growth {:.1} MB",
                 megabytes(before),
                 megabytes(after),
                 megabytes(after) - megabytes(before)
             ),
-            _ => format!("{actions}; memory is not known on this system"),
+            _ => format!("{actions}; memory is unknown on this system"),
         }
     }
 }
 
-/// All files of a folder and of those in it.
+/// Returns all files in a folder and its subfolders.
 fn files_below(folder: &std::path::Path) -> Vec<PathBuf> {
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
     entries.flat_map(|path| if path.is_dir() { files_below(&path) } else { vec![path] }).collect()

@@ -1,4 +1,4 @@
-//! Plays a script: turns its steps into keys, events of the pointer and commands, frame by frame.
+//! Plays a script: turns its steps into keys, pointer events and commands, frame by frame.
 
 use std::collections::VecDeque;
 
@@ -9,9 +9,9 @@ use super::effect::{Activity, Effect};
 use super::monkey::MonkeyRun;
 use super::script::{Awaited, Line, Step};
 
-/// Seconds that a script waits for something before it reports that and goes on.
+/// Seconds that a script waits for something before it reports a failure and continues.
 const PATIENCE: f32 = 600.0;
-/// Frames that egui may need until a layout is stable, before the window is saved.
+/// Frames that egui may need for a stable layout before the window is saved.
 const SETTLING: u32 = 4;
 /// Frames over which a drag is spread.
 const DRAG_FRAMES: u32 = 6;
@@ -28,16 +28,16 @@ enum Ongoing {
     Monkey(Box<MonkeyRun>),
 }
 
-/// A script being played.
+/// The playback of a script.
 #[derive(Debug, Default)]
 pub(crate) struct Player {
     lines: VecDeque<Line>,
-    /// The line that is being played: file, number and text.
+    /// The current line: file, number and text.
     place: String,
     ongoing: Option<Ongoing>,
-    /// Whether lines show verdicts of other frames than those that are awaited or saved.
+    /// Whether the script shows the verdicts of every frame, and not only of frames that it awaits or saves.
     plots: bool,
-    /// Whether a line could not be done, so that the script ends with an error.
+    /// Whether a line failed, so that the script ends with an error.
     pub(crate) failed: bool,
 }
 
@@ -47,8 +47,8 @@ impl Player {
         Self { lines: lines.into(), plots, ..Self::default() }
     }
 
-    /// Whether the verdicts of this frame are shown, unless it is saved: a line awaits them, or a later one saves what is
-    /// plotted of every frame.
+    /// Returns whether the verdicts of this frame are needed even if the frame is not saved: a line awaits
+    /// them, or a later line saves the plots of every frame.
     pub(crate) fn needs_verdicts(&self) -> bool {
         self.plots || matches!(self.ongoing, Some(Ongoing::Await(Awaited::Judged, _)))
     }
@@ -57,23 +57,24 @@ impl Player {
         self.lines.is_empty() && self.ongoing.is_none()
     }
 
-    /// Whether random actions are being played.
+    /// Returns whether random actions are playing.
     pub(crate) fn is_random(&self) -> bool {
         matches!(self.ongoing, Some(Ongoing::Monkey(_)))
     }
 
-    /// The line that asks for this frame's effects; `None` for random actions, some of which are meant to fail.
+    /// Returns the line that causes this frame's effects; `None` for random actions, some of which are meant
+    /// to fail.
     pub(crate) fn place(&self) -> Option<String> {
         (!self.is_random()).then(|| self.place.clone())
     }
 
-    /// The effects of this frame, which comes a number of seconds after the one before.
+    /// Returns the effects of this frame. `seconds` is the time since the previous one.
     pub(crate) fn advance(&mut self, seconds: f32, activity: &Activity) -> Vec<Effect> {
         let mut effects = Vec::new();
         if let Some(ongoing) = self.ongoing.take() {
             self.ongoing = self.go_on(ongoing, seconds, activity, &mut effects);
         }
-        // One step per frame, so that each sees the effect of the one before.
+        // One step per frame, so that each step sees the effect of the previous one.
         if self.ongoing.is_none()
             && effects.is_empty()
             && let Some(line) = self.lines.pop_front()
@@ -123,7 +124,7 @@ impl Player {
             self.failed = true;
             let place = &self.place;
             effects.push(Effect::Print(format!(
-                "error: {place}: nothing came within {PATIENCE:.0} s; the script goes on"
+                "error: {place}: the awaited state was not reached within {PATIENCE:.0} s; the script continues"
             )));
             return None;
         }
@@ -131,7 +132,8 @@ impl Player {
     }
 }
 
-/// Whether a step shows verdicts of every frame, as the plots of the window do, or may lead to anything, as a click does.
+/// Returns whether a step shows the verdicts of every frame, as the window's plots do, or may have any
+/// effect, as a click does.
 fn plots(step: &Step) -> bool {
     match step {
         Step::Run(command) => matches!(command, Command::SaveWindow(_) | Command::SaveFigures(_)),
@@ -140,7 +142,7 @@ fn plots(step: &Step) -> bool {
     }
 }
 
-/// Starts a step; returns the part that is left for the next frames.
+/// Starts a step. Returns the part that remains for the next frames.
 fn start(step: Step, effects: &mut Vec<Effect>) -> Option<Ongoing> {
     match step {
         Step::Run(command @ (Command::SaveWindow(_) | Command::Screenshot(_))) => {
@@ -171,7 +173,7 @@ fn hold(chord: Chord, seconds: f32, effects: &mut Vec<Effect>) -> Ongoing {
     Ongoing::Release(chord, seconds)
 }
 
-/// A frame of a drag.
+/// Plays a frame of a drag.
 fn drag(from: [f32; 2], to: [f32; 2], frame: u32, effects: &mut Vec<Effect>) -> Option<Ongoing> {
     let share = frame as f32 / DRAG_FRAMES as f32;
     let at = [0, 1].map(|axis| from[axis] + (to[axis] - from[axis]) * share);
@@ -258,7 +260,7 @@ mod tests {
         }
         assert_eq!(player.advance(FRAME, &Activity::default()), [Effect::Run(Command::Quit)]);
         assert!(player.is_done() && !player.failed);
-        assert_eq!(player.place().as_deref(), Some("script:2"), "what it asked for");
+        assert_eq!(player.place().as_deref(), Some("script:2"), "the line of the command");
         let mut player = self::player(vec![Step::Await(Awaited::Tuned)]);
         let tuning = Activity { is_tuning: true, ..Activity::default() };
         player.advance(FRAME, &tuning);

@@ -1,5 +1,5 @@
-//! Scripts: a list of actions, one per line, that the viewer plays as if a person did them. They make the pictures of the
-//! docs and the tests of the window. The names of the actions are the text form of commands.
+//! Scripts: a list of actions, one per line, that the viewer plays like user input. They make the pictures of
+//! the docs and drive the tests of the window. The names of the actions are the text form of commands.
 //!
 //! ```text
 //! # the courtyard, compared with rays
@@ -73,7 +73,7 @@ pub(crate) struct Line {
 /// The state that a script waits for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Awaited {
-    /// No scene is being loaded, and no view of an artefact searched.
+    /// No scene is loading, and no search for the view of an artefact is running.
     Loaded,
     /// The shown picture has been judged.
     Judged,
@@ -81,7 +81,7 @@ pub(crate) enum Awaited {
     Tuned,
 }
 
-/// Why the window's surface has no texture for a frame.
+/// Reason why the window's surface has no texture for a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Refusal {
     Lost,
@@ -95,11 +95,11 @@ pub(crate) enum Refusal {
 pub(crate) struct Monkey {
     pub(crate) seconds: f32,
     pub(crate) seed: u64,
-    /// Folder of files to drop, good and hostile ones.
+    /// Folder of files to drop, valid and hostile ones.
     pub(crate) files: Option<String>,
 }
 
-/// An action: its name, its arguments, its description, and how its line is read.
+/// An action: its name, its arguments, its description, and its parser.
 pub(crate) struct Action {
     pub(crate) name: &'static str,
     pub(crate) takes: &'static str,
@@ -107,9 +107,9 @@ pub(crate) struct Action {
     read: Read,
 }
 
-/// How the rest of a line is read.
+/// Parser of the rest of a line.
 enum Read {
-    /// It has no arguments, and is this command.
+    /// No arguments: always this command.
     Plain(Command),
     Command(fn(Words<'_>) -> Result<Command>),
     Step(fn(Words<'_>) -> Result<Step>),
@@ -139,7 +139,7 @@ const fn step(
 
 /// Every action, as `--actions` and error messages list them.
 pub(crate) const ACTIONS: &[Action] = &[
-    command("open", "SCENE", "opens courtyard, plain, arcade, forest, a sample or a file", |words| {
+    command("open", "SCENE", "opens courtyard, plain, arcade, forest, town, a sample or a file", |words| {
         words.text().map(Command::Open)
     }),
     step("drop", "FILE", "drops a file on the window", |words| words.text().map(Step::Drop)),
@@ -147,16 +147,16 @@ pub(crate) const ACTIONS: &[Action] = &[
     command("technique", "NAME|FILE.toml", "uses a technique", technique),
     command("view", "NAME", "shows a view, by its name in view.mode", view),
     plain("outside", "shows the view from outside, or the final picture", Command::ToggleOutside),
-    plain("marks", "marks wrong pixels in the next way", Command::NextMarks),
-    plain("inset", "shows the next choice of maps in the inset", Command::NextInset),
-    plain("freeze", "freezes the fit, or lets it follow the camera again", Command::ToggleFreeze),
+    plain("marks", "changes to the next kind of marks for wrong pixels", Command::NextMarks),
+    plain("inset", "changes to the next choice of maps in the inset", Command::NextInset),
+    plain("freeze", "freezes the fit, or releases it", Command::ToggleFreeze),
     plain("play", "plays or pauses the animation", Command::TogglePlay),
-    plain("sun", "lets the sun move, or stops it", Command::ToggleSun),
+    plain("sun", "starts or stops the sun's motion", Command::ToggleSun),
     command("show", "acne|aliasing|hole", "shows an artefact", |words| words.artefact().map(Command::ShowArtefact)),
-    plain("fix", "fixes the artefact that is shown", Command::FixArtefact),
+    plain("fix", "fixes the shown artefact", Command::FixArtefact),
     plain("close", "stops showing the artefact", Command::CloseArtefact),
-    command("look", "X Y Z TO X Y Z", "puts the eye at a point and looks at another, in metres", look),
-    command("scrub", "SECONDS", "poses the scene at a time of its animation", |words| {
+    command("look", "X Y Z TO X Y Z", "moves the eye to a point and turns it toward another, in metres", look),
+    command("scrub", "SECONDS", "sets the animation to a time", |words| {
         words.numbers().map(|[seconds]| Command::Scrub(seconds))
     }),
     command("compare", "on|off", "compares two techniques", |words| words.toggle().map(Command::Compare)),
@@ -166,31 +166,31 @@ pub(crate) const ACTIONS: &[Action] = &[
     plain("swap", "swaps the two techniques", Command::SwapSides),
     plain("copy-to-other", "copies this technique to the other side", Command::CopyToOther),
     plain("undo", "undoes the last change", Command::Undo),
-    plain("redo", "does again what was undone", Command::Redo),
-    plain("reset", "puts settings and camera back to where they began", Command::Reset),
-    plain("level", "takes the camera's roll away", Command::LevelCamera),
-    plain("reset-camera", "puts the camera back to where it began", Command::ResetCamera),
+    plain("redo", "redoes the change that was undone last", Command::Redo),
+    plain("reset", "restores the initial settings and camera", Command::Reset),
+    plain("level", "removes the camera's roll", Command::LevelCamera),
+    plain("reset-camera", "restores the initial camera", Command::ResetCamera),
     command("bookmark", "1..9", "saves the view under a number", |words| words.digit().map(Command::SetBookmark)),
     command("goto", "1..9", "goes to a saved view", |words| words.digit().map(Command::GoToBookmark)),
-    command("focus", "X Y", "flies toward what is there: shares of the picture from the top left", |words| {
+    command("focus", "X Y", "flies toward a point of the picture, in shares from the top left", |words| {
         words.numbers().map(Command::Focus)
     }),
     plain("measure", "judges the sample and modern maps against rays", Command::MeasureSample),
     plain("tune", "searches for a better technique", Command::StartTune),
     plain("cancel", "stops the search", Command::CancelTune),
-    plain("apply", "uses what the search found", Command::ApplyTune),
-    plain("discard", "forgets what the search found", Command::DiscardTune),
+    plain("apply", "applies the result of the search", Command::ApplyTune),
+    plain("discard", "discards the result of the search", Command::DiscardTune),
     command("preset", "NAME", "saves the technique as a preset", |words| words.text().map(Command::SavePreset)),
     command("delete-preset", "NAME", "deletes a saved preset", |words| words.text().map(Command::DeletePreset)),
     plain("copy-rust", "copies the technique as Rust code", Command::CopyRust),
-    plain("copy-link", "copies a link to what is on show", Command::CopyLink),
+    plain("copy-link", "copies a link to the current scene and settings", Command::CopyLink),
     plain("copy-command-line", "copies the command line that starts with these settings", Command::CopyCommandLine),
     command("theme", "dark|light|system", "changes the colours", theme),
     plain("panel", "hides or shows the panel", Command::TogglePanel),
     plain("help", "shows or hides the table of keys", Command::ToggleHelp),
     step("press", "KEY", "presses a key, such as `w`, `Ctrl+Z` or `space`", |words| words.chord().map(Step::Press)),
     step("hold", "KEY SECONDS", "holds a key", hold),
-    step("type", "TEXT", "types into what has the focus", |words| Ok(Step::Type(words.rest.to_owned()))),
+    step("type", "TEXT", "types into the focused widget", |words| Ok(Step::Type(words.rest.to_owned()))),
     step("hover", "X Y", "moves the pointer, in points of the window", |words| words.numbers().map(Step::Hover)),
     step("click", "X Y", "clicks", |words| words.numbers().map(|at| Step::Click(at, 1))),
     step("doubleclick", "X Y", "clicks twice", |words| words.numbers().map(|at| Step::Click(at, 2))),
@@ -208,7 +208,7 @@ pub(crate) const ACTIONS: &[Action] = &[
     step(
         "await",
         "loaded|judged|tuned",
-        "waits until scene and artefact are there, the picture is judged, or no search runs",
+        "waits until the scene and the artefact are shown, the picture is judged, or no search is running",
         |words| words.awaited().map(Step::Await),
     ),
     command("picture", "FILE.png", "saves the picture without the panel", |words| {
@@ -229,25 +229,26 @@ pub(crate) const ACTIONS: &[Action] = &[
     step(
         "refuse-frame",
         "lost|outdated|timeout|occluded",
-        "lets the window's surface refuse the next frame with this answer",
+        "makes the window's surface refuse the next frame with this answer",
         |words| words.refusal().map(Step::Refuse),
     ),
     plain("quit", "quits the viewer", Command::Quit),
 ];
 
-/// Reads a script; empty lines and comments, from a `#` at the start of a word on, are ignored.
+/// Reads a script. Empty lines are ignored, and comments from a `#` at the start of a word on.
 ///
 /// # Errors
 ///
-/// For a line that is not an action, with the name of the file, the number of the line and the actions that exist.
+/// For a line that is not an action, with the name of the file, the number of the line and the list of
+/// actions.
 pub(crate) fn read(path: &Path) -> Result<Vec<Line>> {
     let name = path.display();
     let bytes = platform::read(path).with_context(|| format!("the script {name} cannot be read"))?;
-    let text = String::from_utf8(bytes).with_context(|| format!("the script {name} is no text"))?;
+    let text = String::from_utf8(bytes).with_context(|| format!("the script {name} is not text"))?;
     lines(&name.to_string(), &text)
 }
 
-/// Reads the text of a script of a name.
+/// Parses the text of a script. `name` is for messages.
 pub(crate) fn lines(name: &str, text: &str) -> Result<Vec<Line>> {
     let mut lines = Vec::new();
     for (number, line) in (1..).zip(text.lines()) {
@@ -260,7 +261,7 @@ pub(crate) fn lines(name: &str, text: &str) -> Result<Vec<Line>> {
     Ok(lines)
 }
 
-/// Reads a line.
+/// Parses a line.
 pub(crate) fn parse(line: &str) -> Result<Step> {
     let (name, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
     let action = ACTIONS.iter().find(|action| action.name == name).ok_or_else(|| {
@@ -284,12 +285,12 @@ struct Words<'a> {
 
 impl Words<'_> {
     fn text(self) -> Result<String> {
-        ensure!(!self.rest.is_empty(), "something is missing");
+        ensure!(!self.rest.is_empty(), "an argument is missing");
         Ok(self.rest.to_owned())
     }
 
     fn nothing(self) -> Result<()> {
-        ensure!(self.rest.is_empty(), "nothing follows it");
+        ensure!(self.rest.is_empty(), "it takes no arguments");
         Ok(())
     }
 
@@ -310,7 +311,8 @@ impl Words<'_> {
         Ok(number as u8)
     }
 
-    /// The one of some words that stands here; else an error that ends with `what`.
+    /// Returns the value of the word in `words` that equals the argument, else an error that ends with
+    /// `what`.
     fn one_of<T: Copy>(self, words: &[(&str, T)], what: &str) -> Result<T> {
         let found = words.iter().find(|(word, _)| *word == self.rest);
         found.map(|(_, value)| *value).ok_or_else(|| anyhow!("{:?} {what}", self.rest))
@@ -341,7 +343,7 @@ impl Words<'_> {
             ("timeout", Refusal::Timeout),
             ("occluded", Refusal::Occluded),
         ];
-        self.one_of(&words, "is no answer of a surface")
+        self.one_of(&words, "is not an answer of a surface")
     }
 
     fn monkey(self) -> Result<Monkey> {
@@ -354,8 +356,8 @@ impl Words<'_> {
     }
 }
 
-/// A parameter and its value. Only the name is checked here: whether the value is possible depends on the settings
-/// at that time.
+/// Parses a parameter and its value. Only the name is checked, since the valid values depend on the settings
+/// at run time.
 fn set(words: Words<'_>) -> Result<Command> {
     let (id, value) = words.rest.split_once(char::is_whitespace).context("a value is missing")?;
     let is_known = params::parameter(id).is_some() || id.starts_with(OPTION_PREFIX);
@@ -363,7 +365,7 @@ fn set(words: Words<'_>) -> Result<Command> {
     Ok(Command::Set(id.to_owned(), value.trim().to_owned()))
 }
 
-/// A preset or a file. The file is read later again, by the command.
+/// Parses a preset name or a file name. The command reads the file again later.
 fn technique(words: Words<'_>) -> Result<Command> {
     let name = words.text()?;
     NamedTechnique::find(&name)?;
@@ -444,7 +446,7 @@ mod tests {
             ("wait inf", &["not a finite number"]),
             ("press hyper+x", &["no key \"hyper+x\""]),
             ("bookmark 12", &["12 is not one of 1 to 9"]),
-            ("quit now", &["nothing follows it"]),
+            ("quit now", &["it takes no arguments"]),
             ("monkey 3", &["a seed is missing"]),
         ] {
             let (_folder, path) = write(&format!("wait 1\n\n{line}\n"));

@@ -1,10 +1,10 @@
-//! The three demonstrations: where to stand and what to set so that an artefact is unmistakable in
-//! the scene at hand, and the setting that cures it.
+//! The three demonstrations: the camera and the settings that make an artefact clearly visible in the current
+//! scene, and the setting that cures it.
 //!
-//! Several maps keep their fit, their splits and their stabilisation: only the settings that prevent the artefact are
-//! changed. A single map gets the fit that shows the artefact best. Windows cannot be made coarse and hold every caster
-//! over them, so focused maps replace them until the cure of aliasing or of a hole brings them back. Acne is cured at
-//! the size of texels that shows it.
+//! Several maps keep their fit, their splits and their stabilisation. Only the settings that prevent the
+//! artefact are changed. A single map gets the fit that shows the artefact best. Windows cannot be made
+//! coarse and hold every caster over them, so focused maps replace them until the cure of aliasing or of a
+//! hole restores them. Acne is cured at the texel size that shows it.
 
 mod narration;
 mod view_search;
@@ -22,45 +22,45 @@ use shadowfit_study::{PosedScene, near_of};
 
 use view_search::{GRID, Seen, Shadow, ViewSearch, aimed};
 
-/// Height of a shadow texel on screen when acne is shown, as a share of the picture's height: a few
-/// pixels, so that its stripes can be told apart.
+/// Height of a shadow texel on screen when acne is shown, as a share of the picture's height: a few pixels,
+/// so that its stripes are distinguishable.
 const ACNE_TEXEL: f32 = 1.0 / 210.0;
-/// The same when aliasing is shown: dozens of pixels.
+/// Height of a shadow texel on screen when aliasing is shown: dozens of pixels.
 const ALIASING_TEXEL: f32 = 1.0 / 22.0;
-/// Constant bias of acne's cure, in texels. The automatic bias clears every plane; where surfaces meet in a crease, a
-/// texel stores the neighbouring surface, which is a fraction of a texel higher, and a single comparison is not
-/// averaged with others.
+/// Constant bias of acne's cure, in texels. The automatic bias clears every plane. Where surfaces meet in a
+/// crease, a texel stores the neighbouring surface, which is a fraction of a texel higher, and a single
+/// comparison is not averaged with others.
 const CREASE_BIAS: f32 = 1.0;
 /// Shadow distance when the hole is shown with a single map, in radii of the subject.
 const HOLE_DISTANCE: f32 = 4.0;
-/// Reach of a long shadow, in radii of the scene, from which on the scene is shown as a whole.
+/// Least shadow length, in radii of the scene, for showing the scene as a whole.
 const LARGE_REACH: f32 = 0.3;
-/// Share of the picture above which a larger hole counts no more.
+/// Share of the picture above which a larger hole does not increase the score.
 const LARGE_HOLE: f32 = 0.15;
 /// Share of the picture that should still show a shadow when the hole is shown.
 const KEPT_SHADOW: f32 = 0.1;
-/// Factor by which a hole counts more where the rest of the shadow breaks off at it, and the length of that break, in
-/// coarse pixels, from which the factor applies in full.
+/// Factor by which a hole scores higher where the visible shadow breaks off at it, and the length of that
+/// break, in coarse pixels, from which the factor applies in full.
 const BREAK: f32 = 1.5;
 const BREAKS: f32 = 5.0;
 /// Resolution of a single map, in texels, when aliasing is shown.
 const SHOWN_RESOLUTION: u32 = 2048;
-/// The same after aliasing is fixed.
+/// Resolution of a single map after aliasing is fixed, in texels.
 const FIXED_RESOLUTION: u32 = 4096;
 /// Least resolution of each of several maps after aliasing is fixed, in texels.
 const FIXED_RESOLUTION_EACH: u32 = 2048;
-/// Halvings of the range in which the right coarseness is searched, on a logarithmic scale: to a millionth of it.
+/// Bisection steps in the search for the coarseness, on a logarithmic scale: to a millionth of the range.
 const STEPS: u32 = 24;
-/// Aspect that candidates are judged with.
+/// Aspect ratio of the candidates' pictures.
 const ASPECT: f32 = 16.0 / 9.0;
 
-/// Input of the search for the view of an artefact; it can be sent to a thread.
+/// Input of the search for the view of an artefact. It can be sent to a thread.
 #[derive(Debug)]
 pub(crate) struct Search {
     pub(crate) artefact: Artefact,
     pub(crate) scene: PosedScene,
     pub(crate) settings: Settings,
-    /// The present camera with its lens.
+    /// The current camera with its lens.
     pub(crate) lens: PerspectiveCamera,
 }
 
@@ -70,14 +70,14 @@ pub(crate) struct Found {
     pub(crate) artefact: Artefact,
     pub(crate) settings: Settings,
     pub(crate) camera: FlyCamera,
-    /// Whether it shows the artefact; if no view does, this one comes closest.
+    /// Whether it shows the artefact. If no view does, this one comes closest.
     pub(crate) shows: bool,
-    /// What to look for, in a sentence about this scene.
+    /// A hint where to look, in a sentence about this scene.
     pub(crate) narration: String,
 }
 
 impl Search {
-    /// Looks for the view and the settings that show the artefact best.
+    /// Searches for the view and the settings that show the artefact best.
     pub(crate) fn run(mut self) -> Found {
         let view = &mut self.settings.view;
         (view.mode, view.play, view.freeze_fit, view.shadows) = (ViewMode::Final, false, false, true);
@@ -118,7 +118,7 @@ impl Search {
         PerspectiveCamera { aspect: ASPECT, up: Vec3::Y, eye: self.lens.eye - self.scene.origin(), ..self.lens }
     }
 
-    /// What to look for in the present view with the present settings.
+    /// Returns a hint where to look in the current view with the current settings.
     pub(crate) fn narrate(&self) -> String {
         let search = ViewSearch::new(&self.scene, self.settings.inputs, self.settings.light.direction());
         let camera = self.lens_for_rays();
@@ -126,8 +126,8 @@ impl Search {
     }
 }
 
-/// Applies the cure of an artefact on show; `before` is the technique from before it was shown.
-/// `seen` is the distance beyond which hardly anything is seen, in metres, from [`farthest_seen`].
+/// Applies the cure of a shown artefact. `before` is the technique before it was shown. `seen` is the
+/// distance beyond which hardly anything is visible, in metres, from [`farthest_seen`].
 pub(crate) fn fix(technique: &mut Technique, artefact: Artefact, before: &Technique, seen: Option<f32>) {
     let is_single = technique.maps.count() == 1;
     let gave_way = !is_single && is_of(technique, FitKind::Focused) && matches!(before.maps, Maps::Windows(_));
@@ -135,7 +135,7 @@ pub(crate) fn fix(technique: &mut Technique, artefact: Artefact, before: &Techni
         *technique = technique.with_maps(technique.maps.as_windows());
     }
     match artefact {
-        // Enough for planes and creases, and nothing else changed.
+        // Enough for planes and creases, with no other change.
         Artefact::Acne => {
             technique.bias = BiasSettings { constant: CREASE_BIAS, ..BiasSettings::automatic(technique.filter) };
         }
@@ -151,7 +151,7 @@ pub(crate) fn fix(technique: &mut Technique, artefact: Artefact, before: &Techni
             }
             *technique = technique.with_filter(FilterKind::Pcf5x5);
         }
-        // Take in every caster between the light and the view.
+        // Cover every caster between the light and the view.
         Artefact::ClippingHole => {
             technique.fit.casters = CasterPolicy::PerObject;
             if is_single {
@@ -161,13 +161,13 @@ pub(crate) fn fix(technique: &mut Technique, artefact: Artefact, before: &Techni
     }
 }
 
-/// The subject of the demonstrations: the scene's subject, or the part that shows most.
+/// The subject of the demonstrations: the scene's subject, or a part of the scene.
 struct Place {
     bounds: Aabb,
     center: Vec3,
     radius: f32,
     lens: PerspectiveCamera,
-    /// Shadows that it throws, in order of their reach.
+    /// Shadows that it casts, sorted by length.
     shadows: Vec<Shadow>,
 }
 
@@ -181,7 +181,7 @@ impl Place {
         if has_subject || long.reach > radius * LARGE_REACH {
             return whole;
         }
-        // A scene far larger than its shadows, such as a town: go to one of its casters.
+        // A scene far larger than its shadows, such as a town: choose one of its casters.
         let center = long.receiver - light * (long.reach * 0.5);
         let radius = long.reach;
         let bounds = Aabb { min: center - radius, max: center + radius };
@@ -195,14 +195,14 @@ impl Place {
         point.cmpge(self.bounds.min - slack).all() && point.cmple(self.bounds.max + slack).all()
     }
 
-    /// Height of the picture, in metres, at a distance from the eye.
+    /// Returns the height of the picture, in metres, at a distance from the eye.
     fn picture_height(&self, distance: f32) -> f32 {
         2.0 * (self.lens.fov_y * 0.5).tan() * distance
     }
 }
 
-/// The subject's upper part close up from the lit side, without any bias: every slope shadows
-/// itself.
+/// Shows acne: the subject's upper part close up from the lit side, without any bias, so that every slope
+/// shadows itself.
 fn show_acne(search: &ViewSearch<'_>, place: &Place, settings: &mut Settings) -> (PerspectiveCamera, bool) {
     let target = place.center + Vec3::Y * (place.bounds.max.y - place.bounds.min.y) * 0.25;
     let distances = [1.5, 1.8].map(|radii| radii * place.radius);
@@ -230,7 +230,7 @@ fn show_acne(search: &ViewSearch<'_>, place: &Place, settings: &mut Settings) ->
     (camera, found)
 }
 
-/// The edge of the subject's shadow close up, in a map that has to cover far too much.
+/// Shows aliasing: the edge of the subject's shadow close up, in a map that covers far too much.
 fn show_aliasing(search: &ViewSearch<'_>, place: &Place, settings: &mut Settings) -> (PerspectiveCamera, bool) {
     let targets = spread(&place.shadows, 5);
     let height = place.radius;
@@ -253,7 +253,7 @@ fn show_aliasing(search: &ViewSearch<'_>, place: &Place, settings: &mut Settings
             .map(|seen| seen.filter(|seen| search.facing(seen) > 0.2).map(|seen| search.is_shadowed(&seen)))
             .collect();
         let share = shadowed.iter().filter(|pixel| **pixel == Some(true)).count() as f32 / shadowed.len() as f32;
-        // The most edge, with about as much shadow as light.
+        // The most edge, with about equal areas of shadow and light.
         edges(&shadowed) as f32 * (1.0 - (share - 0.4).abs())
     };
     let (camera, found) = best(&place.lens, candidates, score);
@@ -269,7 +269,8 @@ fn show_aliasing(search: &ViewSearch<'_>, place: &Place, settings: &mut Settings
     (camera, found)
 }
 
-/// Between the subject and its shadow: the shadow is in view, its caster is not in the map.
+/// Shows a hole: the camera is between the subject and its shadow, so that the shadow is in view and its
+/// caster is not in the map.
 fn show_hole(search: &ViewSearch<'_>, place: &Place, settings: &mut Settings) -> (PerspectiveCamera, bool) {
     let technique = &mut settings.technique;
     *technique = alone_or_as_cascades(*technique, FitKind::XnaSample).with_filter(technique.filter);
@@ -279,7 +280,7 @@ fn show_hole(search: &ViewSearch<'_>, place: &Place, settings: &mut Settings) ->
         technique.fit.max_distance = place.radius * HOLE_DISTANCE;
     }
     let targets = spread(&place.shadows, 4);
-    // The start of the shadow as well: where only the foot of a caster is in view, its shadow breaks off.
+    // The start of the shadow as well: if only the foot of a caster is in view, its shadow breaks off.
     let base = Vec3::new(place.center.x, place.bounds.min.y, place.center.z);
     let candidates = targets.iter().flat_map(|shadow| {
         [shadow.receiver, (shadow.receiver + base) * 0.5].into_iter().flat_map(move |target| {
@@ -296,14 +297,14 @@ fn show_hole(search: &ViewSearch<'_>, place: &Place, settings: &mut Settings) ->
         let shadowed = search.shadowed(&pixels);
         let count = shadowed.iter().flatten().count() as f32;
         let large = pixels.len() as f32 * LARGE_HOLE;
-        // Skip the fit where even a hole in all of the shadow would count less than one that was found.
+        // Skip the fit if even a hole in all of the shadow would score lower than one that was found.
         if count.min(large) * (1.0 + BREAK) <= most {
             return 0.0;
         }
         let Some(fitted) = search.fit(technique, camera) else { return 0.0 };
         let holes = search.holes(&shadowed, &fitted);
         let hole = holes.iter().filter(|hole| **hole == Some(true)).count() as f32;
-        // A large hole, but a shadow that breaks off says more than one that is missing whole.
+        // A large hole is good, but a shadow that breaks off shows more than one that is missing completely.
         let kept = (count - hole) / (pixels.len() as f32 * KEPT_SHADOW);
         let breaks = edges(&holes) as f32 / BREAKS;
         let score = hole.min(large) * (0.1 + 0.9 * kept.min(1.0) + BREAK * breaks.min(1.0));
@@ -313,7 +314,8 @@ fn show_hole(search: &ViewSearch<'_>, place: &Place, settings: &mut Settings) ->
     best(&place.lens, candidates, score)
 }
 
-/// A single map fitted by another rule, with no margin; several windows as focused maps; other maps as they are.
+/// Returns a single map with another fit and no margin; several windows as focused maps; other maps
+/// unchanged.
 fn alone_or_as_cascades(mut technique: Technique, kind: FitKind) -> Technique {
     if technique.maps.count() == 1 {
         technique.fit.margin = 0.0;
@@ -326,13 +328,13 @@ fn alone_or_as_cascades(mut technique: Technique, kind: FitKind) -> Technique {
     }
 }
 
-/// Whether a rule fits the maps.
+/// Returns whether the maps have a fit.
 fn is_of(technique: &Technique, kind: FitKind) -> bool {
     technique.maps.shape().is_some_and(|shape| shape.kind == kind)
 }
 
-/// Candidate eyes around a target, each with the target: turned from the light's side by
-/// `azimuths`, raised by `elevations` (radians), at `distances` (metres).
+/// Returns candidate eyes around a target, each with the target: turned from the light's side by `azimuths`,
+/// raised by `elevations` (radians), at `distances` (metres).
 fn around(target: Vec3, to_light: Vec3, azimuths: &[f32], elevations: &[f32], distances: &[f32]) -> Vec<[Vec3; 2]> {
     let toward = to_light.x.atan2(to_light.z);
     let mut eyes = Vec::new();
@@ -348,12 +350,13 @@ fn around(target: Vec3, to_light: Vec3, azimuths: &[f32], elevations: &[f32], di
     eyes
 }
 
-/// Twelve directions around the vertical.
+/// Returns twelve directions around the vertical axis, in radians.
 fn around_the_clock() -> [f32; 12] {
     core::array::from_fn(|hour| hour as f32 / 12.0 * TAU - PI)
 }
 
-/// The candidate with the greatest score; the present camera where all scores are 0.
+/// Returns the candidate with the greatest score, and whether any score exceeds 0. If none does, returns the
+/// current camera.
 fn best(
     lens: &PerspectiveCamera,
     candidates: impl IntoIterator<Item = [Vec3; 2]>,
@@ -370,13 +373,13 @@ fn best(
     (best.1, best.0 > 0.0)
 }
 
-/// Whether something blocks the view close to the eye.
+/// Returns whether something blocks the view close to the eye.
 fn is_blocked(pixels: &[Option<Seen>], nearest: f32) -> bool {
     let close = pixels.iter().flatten().filter(|seen| seen.distance < nearest).count();
     close * 12 > pixels.len()
 }
 
-/// Number of pairs of neighbouring pixels with one in shadow and the other lit.
+/// Counts the pairs of neighbouring pixels with one in shadow and the other lit.
 fn edges(shadowed: &[Option<bool>]) -> usize {
     let width = GRID[0] as usize;
     let differ = |a: usize, b: usize| matches!((shadowed[a], shadowed[b]), (Some(a), Some(b)) if a != b);
@@ -389,13 +392,13 @@ fn edges(shadowed: &[Option<bool>]) -> usize {
         .sum()
 }
 
-/// A few of the shadows, evenly picked from their order.
+/// Returns a few of the shadows, at even intervals of their order.
 fn spread(sorted: &[Shadow], count: usize) -> Vec<Shadow> {
     let count = count.min(sorted.len());
     (0..count).map(|index| sorted[(2 * index + 1) * sorted.len() / (2 * count)]).collect()
 }
 
-/// How coarse a map should be.
+/// Wanted coarseness of a map.
 struct Coarse {
     /// A point that reads the map.
     point: Vec3,
@@ -405,8 +408,8 @@ struct Coarse {
     least: f32,
 }
 
-/// Makes texels as large as wanted: by the frustum that a single map has to hold, or by the margin around each of
-/// several maps.
+/// Makes texels as large as wanted, by the frustum that a single map has to cover, or by the margin around
+/// each of several maps.
 fn coarsen(search: &ViewSearch<'_>, camera: &PerspectiveCamera, settings: &mut Settings, wanted: &Coarse) {
     let is_single = settings.technique.maps.count() == 1;
     let with = |amount: f32| {
@@ -426,7 +429,7 @@ fn coarsen(search: &ViewSearch<'_>, camera: &PerspectiveCamera, settings: &mut S
         Some(fitted.maps[fitted.read_at(point)?].projection.texel_size.max_element())
     };
     let resolution = settings.technique.fit.resolution.max_element() as f32;
-    // A margin of half a map's texels alone makes them as large as wanted.
+    // A margin of half a map's texels already makes them as large as wanted.
     let (mut low, mut high) = if is_single {
         (wanted.least, wanted.least * 1e4)
     } else {
@@ -439,7 +442,7 @@ fn coarsen(search: &ViewSearch<'_>, camera: &PerspectiveCamera, settings: &mut S
     *settings = with(low);
 }
 
-/// Distance beyond which hardly anything is seen, in metres.
+/// Returns the distance beyond which hardly anything is visible, in metres.
 pub(crate) fn farthest_seen(scene: &PosedScene, light: Vec3, camera: &PerspectiveCamera) -> Option<f32> {
     let camera = PerspectiveCamera { aspect: ASPECT, eye: camera.eye - scene.origin(), ..*camera };
     let pixels = ViewSearch::new(scene, Inputs::default(), light).look(&camera);
@@ -449,7 +452,7 @@ pub(crate) fn farthest_seen(scene: &PosedScene, light: Vec3, camera: &Perspectiv
     Some(distances.get(index)? * 1.1)
 }
 
-/// A world-space box relative to a world position, in metres.
+/// Returns a world-space box relative to a world position, in metres.
 fn relative_to(origin: DVec3, bounds: &Aabb) -> Aabb {
     let relative = |corner: Vec3| (corner.as_dvec3() - origin).as_vec3();
     Aabb { min: relative(bounds.min), max: relative(bounds.max) }

@@ -1,4 +1,4 @@
-//! All maps side by side over the whole picture, with the parts that were kept, that were redrawn, and that move.
+//! All maps side by side over the whole picture, with kept parts, redrawn parts, and moving casters.
 
 use glam::Vec4;
 use shadowfit::{Aabb, FittedMap};
@@ -10,9 +10,9 @@ use super::inset::{depths, tint};
 
 /// Gap between maps and around them, as a share of the picture's height.
 const GAP: f32 = 0.03;
-/// Height that the picture's upper edge keeps free for what is written there, as a share of it.
+/// Free height at the picture's upper edge for text, as a share of the picture's height.
 const HEAD: f32 = 0.06;
-/// Strength of the colour over a map that is kept.
+/// Strength of the colour over a kept map.
 const KEPT: f32 = 0.12;
 /// Strength of the colour over a part of a map.
 const FILL: f32 = 0.35;
@@ -30,7 +30,7 @@ pub(super) struct Boards {
 const GROUND: Vec4 = Vec4::new(0.006, 0.007, 0.009, 1.0);
 
 impl Boards {
-    /// Places for maps as large as the picture of `size` pixels allows.
+    /// Places maps as large as the picture of `size` pixels allows.
     pub(super) fn new(maps: &[FittedMap], bounds: &Aabb, depth_range: Option<[f32; 2]>, size: [u32; 2]) -> Self {
         let [width, height] = size.map(|side| side as f32);
         let gap = (GAP * height).round();
@@ -42,7 +42,7 @@ impl Boards {
             let [w, h] = [columns, rows];
             ((free[0] - gap) / w as f32).min((free[1] - gap) / h as f32) - gap
         };
-        // Of two equal choices, the one with fewer columns.
+        // Of two equal choices, the one with fewer columns is taken.
         let columns = (1..=count).rev().max_by(|a, b| side(*a).total_cmp(&side(*b))).unwrap_or(1);
         let side = side(columns).max(1.0).floor();
         let rows = count.div_ceil(columns);
@@ -83,7 +83,8 @@ impl Boards {
         quads.into_iter().map(|rectangle| Quad::rectangle(rectangle, GROUND)).collect()
     }
 
-    /// Each map in the colour of kept parts, and over it the rectangles that were drawn.
+    /// Returns a quad over each map in the colour of kept parts, and quads over it for the redrawn
+    /// rectangles.
     pub(super) fn quads(&self, updates: &[UpdatedRect]) -> Vec<Quad> {
         let color = |color: [u8; 3]| linear_color(color).extend(FILL);
         let [kept, drawn, moving] = MAP_UPDATE_COLORS.map(color);

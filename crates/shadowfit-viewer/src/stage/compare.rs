@@ -1,5 +1,5 @@
-//! Two techniques side by side: the second one has its own maps, renderer and judge, and shares everything else with
-//! the first.
+//! Two techniques side by side. The second one has its own maps, renderer and judge, and shares everything
+//! else with the first.
 
 use shadowfit::Technique;
 use shadowfit_params::figures::JudgedFigures;
@@ -11,9 +11,9 @@ use super::Stage;
 use super::shot::Shot;
 use super::side::Side;
 
-/// Presets for the second technique: the first of them that differs from the present one.
+/// Presets for the second technique. The first one that differs from the current technique is used.
 const COMPARED: [&str; 2] = ["stable-4", "windows-4"];
-/// Least share of the picture that either side keeps.
+/// Least share of the picture for either side.
 const LEAST: f32 = 0.02;
 
 /// The second technique.
@@ -38,17 +38,17 @@ impl Other {
 }
 
 impl Stage {
-    /// Whether two techniques are compared.
+    /// Returns whether two techniques are compared.
     pub fn is_comparing(&self) -> bool {
         self.other.is_some()
     }
 
-    /// The second of two techniques.
+    /// Returns the second technique of a comparison.
     pub fn other_technique(&self) -> Option<Technique> {
         self.other.as_ref().map(|other| other.technique)
     }
 
-    /// Compares the technique of the settings with another one, or with none.
+    /// Compares the technique of the settings with another one, or stops comparing.
     pub fn compare_with(&mut self, technique: Option<Technique>) {
         let Some(technique) = technique else {
             self.other = None;
@@ -85,7 +85,7 @@ impl Stage {
         }
     }
 
-    /// The settings, and the second technique where two are compared, to be edited.
+    /// Returns the settings, and the second technique of a comparison, for editing.
     pub fn settings_and_other(&mut self) -> (&mut Settings, Option<&mut Technique>) {
         (&mut self.settings, self.other.as_mut().map(|other| &mut other.technique))
     }
@@ -100,7 +100,7 @@ impl Stage {
         self.other = Some(other);
     }
 
-    /// A side and its technique.
+    /// Returns a side and its technique.
     pub(super) fn side_at(&self, in_other: bool) -> Option<(&Side, Technique)> {
         if !in_other {
             return Some((&self.side, self.settings.technique));
@@ -119,17 +119,17 @@ impl Stage {
         Some(work(side, gpu, scene))
     }
 
-    /// Figures of the second technique's picture.
+    /// Returns the figures of the second technique's picture.
     pub(super) fn other_figures(&self) -> Option<JudgedFigures> {
         self.other.as_ref().and_then(|other| other.side.live.figures(self.clock))
     }
 
-    /// Whether both pictures on show have been judged.
+    /// Returns whether both current pictures have been judged.
     pub fn is_judged(&self) -> bool {
         self.side.live.is_up_to_date() && self.other.as_ref().is_none_or(|other| other.side.live.is_up_to_date())
     }
 
-    /// Names of both techniques: those of presets where they are presets.
+    /// Returns names of both techniques: of their presets, if they are presets.
     pub fn side_names(&self) -> [String; 2] {
         let other = self.other.as_ref().map_or(self.settings.technique, |other| other.technique);
         [self.settings.technique, other].map(|technique| {
@@ -143,23 +143,24 @@ impl Stage {
     }
 }
 
-/// Column at which the bar stands, in pixels.
+/// Returns the column of the bar, in pixels.
 fn column(split: f32, width: u32) -> u32 {
     ((split * width as f32).round() as u32).clamp(1, width.saturating_sub(1).max(1))
 }
 
-/// The part of a picture left of the bar: x, y, width and height in pixels.
+/// Returns the part of a picture left of the bar: x, y, width and height in pixels.
 pub(super) fn left_part(split: f32, [width, height]: [u32; 2]) -> [u32; 4] {
     [0, 0, column(split, width), height]
 }
 
-/// The part right of the bar, and a column of pixels under it.
+/// Returns the part right of the bar, and a column of pixels under it.
 pub(super) fn right_part(split: f32, [width, height]: [u32; 2]) -> [u32; 4] {
     let from = column(split, width).saturating_sub(1);
     [from, 0, width - from, height]
 }
 
-/// The first technique to compare `now` with: a preset with the lengths and the resolution of `now`.
+/// Returns the first technique to compare `now` with: a preset with the shadow distance, caster extension and
+/// resolution of `now`.
 pub(crate) fn compared_with(now: &Technique) -> Technique {
     let [width, height] = now.fit.resolution.to_array();
     let presets = COMPARED.iter().filter_map(|name| Technique::preset(name));

@@ -1,4 +1,5 @@
-//! The scene from the light's direction: how fine a texel the picture asks for, cell by cell, and the maps over it.
+//! The scene from the light's direction: the texel size that the picture needs, cell by cell, and the maps
+//! over it.
 
 use glam::{DVec3, Vec2, Vec3, Vec4};
 use shadowfit::demand::{DemandGrid, LEVELS, SIDE};
@@ -8,19 +9,19 @@ use shadowfit_render::{Line, Quad, box_lines};
 
 use super::fitted::Fitted;
 
-/// Field of view of the camera in the light's place, in radians: so narrow that its lines of sight are nearly parallel,
+/// Field of view of the camera in the light's place, in radians: so narrow that its rays are nearly parallel,
 /// like the light.
 const FOV_Y: f32 = 0.01;
 /// Size of the visible area relative to the map that fills the picture.
 const ROOM: f32 = 1.25;
 /// Strength of the colour over a cell.
 const FILL: f32 = 0.8;
-/// How much the scene under the cells is darkened.
+/// Darkening of the scene under the cells.
 const SHADE: f32 = 0.6;
-/// Share of all counted points that a cell must hold to be shown.
+/// Least share of all counted points in a cell that is shown.
 const LEAST_SHARE: f32 = 2e-4;
 
-/// A camera where the light comes from, so far away that its lines of sight are nearly parallel.
+/// A camera in the light's direction, so far away that its rays are nearly parallel.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct FromLight {
     pub(super) camera: PerspectiveCamera,
@@ -28,8 +29,8 @@ pub(super) struct FromLight {
 }
 
 impl FromLight {
-    /// A camera for a map and its surroundings: the map of index `shown`, or the last one for 0. `None` where nothing
-    /// was fitted.
+    /// Makes a camera for a map and its surroundings: the map of index `shown`, or the last one for 0. `None`
+    /// if nothing was fitted.
     pub(super) fn new(fitted: &Fitted, shown: usize, bounds: Aabb, size: [u32; 2]) -> Option<Self> {
         let map = if shown == 0 { fitted.maps.len().checked_sub(1)? } else { shown };
         let fit = fitted.maps.get(map)?.projection;
@@ -44,7 +45,7 @@ impl FromLight {
         let aspect = size[0] as f32 / size[1] as f32;
         let half = reach(up).max(reach(right) / aspect) * ROOM;
         let distance = half / (FOV_Y * 0.5).tan();
-        // All of the scene lies between the planes.
+        // The whole scene lies between the planes.
         let depth = (bounds.max - bounds.min).length() + corners.iter().map(|c| c.length()).fold(0.0, f32::max) * 2.0;
         let camera = PerspectiveCamera {
             eye: middle - (fit.direction * distance).as_dvec3(),
@@ -58,7 +59,7 @@ impl FromLight {
         Some(Self { camera, size: size.map(|side| side as f32) })
     }
 
-    /// Place of a world position in the picture, in pixels.
+    /// Returns the pixel position of a world position in the picture.
     fn pixel(&self, point: DVec3) -> Vec2 {
         let clip = self.camera.clip_from_world(DepthConvention::Reversed);
         let at = clip * (point - self.camera.eye).as_vec3().extend(1.0);
@@ -67,8 +68,8 @@ impl FromLight {
     }
 }
 
-/// The cells of the grid, the coarse ones first: in the colour of the pixels that a texel covers there, with the finest
-/// map that holds the cell.
+/// Returns the cells of the grid, coarse ones first, in the colour of the pixels per texel there with the
+/// finest map that covers the cell.
 pub(super) fn quads(from_light: &FromLight, fitted: &Fitted, demand: Option<DemandGrid<'_>>) -> Vec<Quad> {
     let Some(demand) = demand else { return Vec::new() };
     let space = demand.space;
@@ -98,7 +99,7 @@ pub(super) fn quads(from_light: &FromLight, fitted: &Fitted, demand: Option<Dema
     quads
 }
 
-/// The map with the smallest texels that holds a place across the light.
+/// Returns the map with the smallest texels that covers a place across the light.
 fn finest(fitted: &Fitted, place: DVec3) -> Option<&LightProjection> {
     let holds = |fit: &&LightProjection| {
         let uv = fit.uv_from_world.transform_point3((place - fit.origin).as_vec3());
@@ -108,7 +109,7 @@ fn finest(fitted: &Fitted, place: DVec3) -> Option<&LightProjection> {
     fitted.maps.iter().map(|map| &map.projection).filter(holds).min_by(|a, b| area(a).total_cmp(&area(b)))
 }
 
-/// The boxes of the maps in their tints, and the camera's frustum in white.
+/// Returns the boxes of the maps in their tints, and the camera's frustum in white.
 pub(super) fn lines(fitted: &Fitted) -> Vec<Line> {
     let tinted = fitted.maps.iter().zip(linear_map_tints());
     let mut lines: Vec<Line> = tinted

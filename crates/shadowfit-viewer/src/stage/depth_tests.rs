@@ -1,4 +1,4 @@
-//! What windows are told of the pictures before: rays and depth buffers agree.
+//! Visible demand for windows: rays and depth buffers agree.
 
 use shadowfit::Windows;
 use shadowfit::demand::{DemandGrid, LEVELS};
@@ -9,17 +9,17 @@ use shadowfit_testing::renderer_gpu;
 
 use super::*;
 
-/// Shares of the points in each octave of texels.
+/// Returns the shares of the points in each octave of texels.
 fn shares(grid: &DemandGrid<'_>) -> Vec<f64> {
     let total: u32 = grid.counts.iter().sum();
     let levels = grid.counts.chunks(grid.counts.len() / LEVELS);
     levels.map(|level| f64::from(level.iter().sum::<u32>()) / f64::from(total)).collect()
 }
 
-/// What the fitter is told: whether a picture said so, and the shares.
+/// Returns the fitter's visible demand: whether it comes from a picture, and the shares.
 fn told(stage: &Stage) -> (bool, Vec<f64>) {
     let seen = stage.side.sun().fitter().visible_demand().expect("windows are told");
-    // Rays are far fewer than a picture's points.
+    // There are far fewer rays than points of a picture.
     (seen.demand().counts.iter().sum::<u32>() > 2500, shares(&seen.demand()))
 }
 
@@ -29,7 +29,7 @@ fn draw(stage: &mut Stage, target: &RenderTarget) {
     stage.gpu().device.poll(wgpu::PollType::wait_indefinitely()).expect("the device answers");
 }
 
-/// The default scene, seen by windows that are told of their last picture.
+/// Returns a stage with the default scene and windows that get the demand of their last picture.
 fn told_by_pictures(gpu: &Gpu, samples: u32) -> Stage {
     let mut stage = Stage::new(gpu.clone(), default_scene(), samples).expect("the default scene");
     stage.prepared_scene().rays();

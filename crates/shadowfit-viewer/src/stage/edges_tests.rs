@@ -1,4 +1,4 @@
-//! Edges that rays make: their figures, their view, and what is said where the filter makes them.
+//! Traced edges: their figures, their view, and the message if they are filtered instead.
 
 use shadowfit::Technique;
 use shadowfit_params::tool::{InsetMaps, ViewMode};
@@ -12,7 +12,7 @@ use super::*;
 
 const SIZE: [u32; 2] = [160, 90];
 
-/// The default scene with traced edges, and nothing over its picture.
+/// Returns a stage with the default scene and traced edges, and nothing over its picture.
 fn stage() -> (Stage, RenderTarget) {
     let mut stage = Stage::new(renderer_gpu(), default_scene(), 1).expect("the default scene");
     stage.wait_for_rays();
@@ -23,7 +23,7 @@ fn stage() -> (Stage, RenderTarget) {
     (stage, target)
 }
 
-/// Draws a picture and waits for what was counted in it.
+/// Draws a picture and waits for its counts.
 fn counts(stage: &mut Stage, target: &RenderTarget) -> Option<EdgeCounts> {
     stage.draw(target);
     stage.gpu().device.poll(wgpu::PollType::wait_indefinitely()).expect("the device answers");

@@ -10,7 +10,8 @@ use super::Stage;
 use super::fitted::Fitted;
 
 impl Stage {
-    /// The live figures of the last frame, for a picture of the given size; `frame_ms` is how long a whole frame took.
+    /// Returns the live figures of the last frame, for a picture of the given size. `frame_ms` is the time of
+    /// a whole frame.
     pub fn figures(&mut self, size: [u32; 2], frame_ms: Option<f32>) -> Figures {
         let (side, mut shot) = self.shot(size);
         let fitted = match &side.fitted {
@@ -56,13 +57,13 @@ impl Stage {
         figures
     }
 
-    /// Figures of the picture that was judged last.
+    /// Returns the figures of the last judged picture.
     pub fn judged_figures(&self) -> Option<JudgedFigures> {
         self.side.live.figures(self.clock)
     }
 
-    /// The map that is read where the middle of the picture meets the scene, and its pixels per texel there. Unknown
-    /// while the scene plays, which would need new rays in each frame.
+    /// Returns the map that is read where the middle of the picture meets the scene, and its pixels per texel
+    /// there. `None` while the scene plays, which would need new rays in each frame.
     fn ahead(&self, fitted: &Fitted, size: [u32; 2]) -> Option<(usize, Option<f32>)> {
         if self.plays() {
             return None;
@@ -78,14 +79,15 @@ impl Stage {
     }
 }
 
-/// Share of a map's area outside the part of the view that it is made for; `None` for a map without such a part.
+/// Returns the share of a map's area outside the part of the view that it serves; `None` for a map without
+/// such a part.
 fn waste(fitted: &Fitted, map: usize) -> Option<f32> {
     let slice = fitted.slice(map)?;
     let fit = fitted.maps.get(map)?.projection.relative_to(slice.origin);
     diagnostics::share_of_map(&fit, &slice.corners).ok().map(|share| 1.0 - share.min(1.0))
 }
 
-/// Pixels per texel along the worse axis at a point relative to the eye.
+/// Returns the pixels per texel along the worse axis at a point relative to the eye.
 fn pixels_per_texel(fit: &LightProjection, camera: &Camera, size: [u32; 2], point: Vec3, normal: Vec3) -> Option<f32> {
     let clip = camera.clip_from_world(DepthConvention::Reversed);
     let fit = fit.relative_to(camera.eye);

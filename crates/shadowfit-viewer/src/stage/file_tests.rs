@@ -1,5 +1,5 @@
-//! Cameras and suns of files: the view that a scene opens with, what moves with its animation, and lengths that follow from
-//! its size.
+//! Cameras and suns of files: the initial view of a scene, motion with its animation, and lengths that follow
+//! from its size.
 
 use core::f32::consts::FRAC_PI_2;
 
@@ -20,7 +20,7 @@ fn quad(corners: [Vec3; 4]) -> Vec<[Vec3; 3]> {
     vec![[a, b, c], [a, c, d]]
 }
 
-/// A floor of 10 by 10 units, a post, and a plate that lies a two-hundredth of a unit over the floor.
+/// Returns a floor of 10 by 10 units, a post, and a plate at a height of 0.005 units over the floor.
 fn model(scale: f32) -> Scene {
     let level = |y: f32, low: Vec2, high: Vec2| {
         quad([[low.x, low.y], [low.x, high.y], [high.x, high.y], [high.x, low.y]].map(|[x, z]| Vec3::new(x, y, z)))
@@ -111,7 +111,7 @@ fn gpu_a_scene_opens_with_the_picture_of_its_camera_whatever_lens_and_node_that_
             let point = placed.eye + (placed.forward * depth + aside).as_dvec3();
             let found = clip * (point - camera.eye).as_vec3().extend(1.0);
             let found = found.truncate() / found.w;
-            // A thousandth of half the picture; angles in f32 cost a lens of 0.2 degrees some of that.
+            // A thousandth of half the picture. Angles in f32 use up some of that for a lens of 0.2 degrees.
             assert!((found.truncate() - Vec2::new(x, y)).length() < 3e-3, "{lens:?}, {rest:?}: {found} for {x}, {y}");
             assert!((0.0..=1.0).contains(&found.z), "{lens:?}: depth {}", found.z);
         }
@@ -177,7 +177,7 @@ fn gpu_a_chosen_camera_keeps_its_lens_after_a_reset_and_gives_it_back_to_the_fir
     add_camera(&mut scene, rest, FileLens::Orthographic { half_height: 3.0, near: 0.1, far: 40.0 });
     let mut stage = stage(scene);
     let first = stage.settings.camera;
-    // As the arguments of a start are taken.
+    // As for the arguments of a start.
     let mut settings = stage.settings;
     let parameters = [("camera.near", "0.5"), ("camera.file", "2")];
     stage.choose_camera(parameters, &mut settings);
@@ -236,7 +236,7 @@ fn gpu_the_strongest_sun_moves_with_the_animation_until_a_person_takes_it() {
     assert!(is_at(&stage, 1));
 }
 
-/// Shares of the classes of the opening view, of the pixels that face the light.
+/// Returns the shares of the classes of the initial view among the facing pixels.
 fn classes(stage: &mut Stage) -> [f64; 6] {
     let judged = stage.judge(SIZE, false).expect("a judged picture");
     assert_eq!(stage.problem(), None);
@@ -275,7 +275,7 @@ fn gpu_rays_start_where_the_setting_says_and_pictures_are_judged_anew() {
     let right = classes(&mut stage);
     params::set_from_str(&mut stage.settings, "view.ray_offset", "2.5").expect("a parameter");
     assert_eq!(stage.ray_offset(), 2.5);
-    // Rays from the floor begin above the post, and find its shadow lit.
+    // Rays from the floor start above the post, and find its shadow lit.
     let [_, _, false_shadow, ..] = classes(&mut stage);
     assert!(right[2] < 1e-3 && false_shadow > 0.01, "{right:?}, {false_shadow}");
 }

@@ -1,4 +1,4 @@
-//! The maps of a view, and which of them a point reads.
+//! The maps of a view, and the map that a point reads.
 
 use glam::DVec3;
 use shadowfit::{Camera, FittedMaps, Technique, ViewFrustum};
@@ -6,10 +6,10 @@ use shadowfit::{Camera, FittedMaps, Technique, ViewFrustum};
 /// The maps of a view.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Fitted {
-    /// The camera of the view, whose view depths choose among maps that are read by view depth; `None` where nothing
-    /// was fitted.
+    /// The camera of the view, whose view depths select among maps that are read by view depth; `None` if
+    /// nothing was fitted.
     pub(crate) camera: Option<Camera>,
-    /// How the maps are read.
+    /// The technique that reads the maps.
     pub(crate) technique: Technique,
     /// View depth at which shadows end, in metres.
     pub(crate) end: f32,
@@ -24,13 +24,13 @@ impl Fitted {
         Self { camera: Some(camera), technique: *technique, end, maps: *maps }
     }
 
-    /// The part of the view that is shadowed.
+    /// Returns the part of the view with shadows.
     pub(crate) fn frustum(&self) -> Option<ViewFrustum> {
         self.between(f32::MIN, f32::MAX)
     }
 
-    /// The part of the view that a map is made for: by view depth, points there read this map first. `None` for a map
-    /// without a range.
+    /// Returns the part of the view that a map serves. By view depth, points in it read this map first.
+    /// `None` for a map without a range.
     pub(crate) fn slice(&self, map: usize) -> Option<ViewFrustum> {
         let depths = self.maps.get(map)?.depths?;
         self.between(depths.near as f32, depths.far.map_or(f32::MAX, |far| far as f32))
@@ -41,8 +41,8 @@ impl Fitted {
         camera.frustum().and_then(|frustum| frustum.slice(near.max(camera.near), far.min(self.end))).ok()
     }
 
-    /// Index of the map that a point (world space, metres) reads; where two are blended, the one that weighs more;
-    /// `None` where no map holds it.
+    /// Returns the index of the map that a point (world space, metres) reads. If two are blended, returns the
+    /// one with the greater weight; `None` if no map covers the point.
     pub(crate) fn read_at(&self, point: DVec3) -> Option<usize> {
         let camera = self.camera?;
         let depth = (point - camera.eye).dot(camera.forward.as_dvec3().normalize());
@@ -81,7 +81,7 @@ mod tests {
         let maps = FitState::new().fit(&input, &technique, &mut Scratch::new(&mut storage)).expect("maps");
         let fitted = Fitted::new(camera, &technique, &maps);
         let at = |depth: f64| fitted.read_at(camera.eye + DVec3::NEG_Z * depth);
-        // By coverage the first map is read wherever it holds the point, which is not only in its slice.
+        // By coverage, the first map is read wherever it covers the point, also outside its slice.
         let by_coverage = Fitted {
             technique: technique.with_maps(cascades.with_selection(MapSelection::default())),
             ..fitted.clone()

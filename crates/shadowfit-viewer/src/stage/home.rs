@@ -1,4 +1,4 @@
-//! The settings and the view that a scene is opened with, and the cameras and suns of its file.
+//! The initial settings and view of a scene, and the cameras and suns of its file.
 
 use glam::{DVec3, Vec3};
 use shadowfit::{Aabb, Camera, Lens};
@@ -9,7 +9,7 @@ use shadowfit_study::{PosedScene, near_of};
 
 use super::Stage;
 
-/// Settings and view for a scene: its own camera and sun where it has them.
+/// Returns the initial settings and view of a scene, with its own camera and sun if it has them.
 pub(super) fn home(prepared: &PosedScene) -> (Settings, FlyCamera) {
     let (scene, bounds) = (prepared.scene(), prepared.bounds());
     let mut settings = Settings::default();
@@ -19,8 +19,8 @@ pub(super) fn home(prepared: &PosedScene) -> (Settings, FlyCamera) {
     }
     let radius = radius(&bounds);
     if scene.subject.is_none() {
-        // A scene of unknown units: all lengths follow from its size. Shadows reach as far as the camera sees, since
-        // maps are placed by content and not by distance.
+        // A scene of unknown units: all lengths follow from its size. Shadows reach the far plane, since maps
+        // are placed by content and not by distance.
         settings.technique.fit.caster_extension = radius * 2.0;
         settings.camera.near = near_of(&bounds);
         settings.camera.far = radius * 20.0;
@@ -37,23 +37,23 @@ pub(super) fn home(prepared: &PosedScene) -> (Settings, FlyCamera) {
     (settings, placed(&camera))
 }
 
-/// Half of the diagonal of a scene's bounds, in metres; of a scene without a size, a millimetre.
+/// Returns half of the diagonal of a scene's bounds, in metres; a millimetre for a scene without a size.
 fn radius(bounds: &Aabb) -> f32 {
     let radius = (bounds.max - bounds.min).length() * 0.5;
     if radius > 0.0 { radius } else { 1e-3 }
 }
 
-/// The number of a sun of a file by its index.
+/// Returns the number of a file's sun with an index.
 fn number(index: usize) -> u32 {
     u32::try_from(index + 1).unwrap_or(u32::MAX)
 }
 
-/// The element of a list with a number that counts from 1.
+/// Returns the element of a list with a number that counts from 1.
 fn numbered<T>(list: &[T], number: Option<u32>) -> Option<&T> {
     list.get((number? as usize).checked_sub(1)?)
 }
 
-/// Takes the lens of a camera of the file.
+/// Copies the lens of a camera of the file into the settings.
 fn take_lens(settings: &mut CameraSettings, camera: &Camera) {
     let (fov_y, height) = match camera.lens {
         Lens::Perspective { fov_y } => (fov_y, None),
@@ -62,21 +62,21 @@ fn take_lens(settings: &mut CameraSettings, camera: &Camera) {
     *settings = CameraSettings { fov_y, height, near: camera.near, far: camera.far, ..*settings };
 }
 
-/// Returns the camera of the file with a number, in the present pose. `None` without such a camera, or if its node has no
-/// size.
+/// Returns the camera of the file with a number, in the current pose. `None` without such a camera, or if its
+/// node has a scale of zero.
 fn seen_by(scene: &PosedScene, number: Option<u32>) -> Option<Camera> {
-    // The settings have no aspect: the window has.
+    // The aspect comes from the window, not from the settings.
     scene.file_camera((number? as usize).checked_sub(1)?, 1.0)
 }
 
-/// The place and direction of a camera of the file.
+/// Returns the position and direction of a camera of the file.
 fn placed(camera: &Camera) -> FlyCamera {
     FlyCamera::placed(camera.eye, camera.forward, camera.up)
 }
 
 impl Stage {
-    /// Moves sun and camera to the file's sun and camera that the settings name, in the present pose. A number that the
-    /// file lacks counts as none. The lens is taken once, when a camera is chosen.
+    /// Moves sun and camera to the file's sun and camera that the settings name, in the current pose. A
+    /// number that the file lacks counts as none. The lens is copied once, when a camera is chosen.
     pub(crate) fn follow_file(&mut self) {
         let (scene, pose) = (self.scene.scene(), self.scene.pose());
         let light = &mut self.settings.light;
@@ -97,7 +97,7 @@ impl Stage {
         self.camera = placed(&camera);
     }
 
-    /// Takes settings whose lens is already the one for their camera of the file.
+    /// Restores settings that already have the lens of their camera of the file.
     pub(crate) fn restore_settings(&mut self, settings: &Settings) {
         if settings.camera.file != self.settings.camera.file {
             self.set_camera(self.camera);
@@ -105,8 +105,8 @@ impl Stage {
         (self.settings, self.followed) = (*settings, settings.camera.file);
     }
 
-    /// Chooses the camera of the file that parameters name, if they name one, and gives the settings its lens. Set the other
-    /// parameters afterwards, since they may change the lens. A value that makes no sense changes nothing.
+    /// Applies the file's camera among the parameters, if there is one, and gives the settings its lens. Set
+    /// the other parameters afterwards, since they may change the lens. An invalid value changes nothing.
     pub(crate) fn choose_camera<'a>(
         &self,
         parameters: impl IntoIterator<Item = (&'a str, &'a str)>,
@@ -120,13 +120,13 @@ impl Stage {
         }
     }
 
-    /// Distance above the surface at which shadow rays start, in metres.
+    /// Returns the distance above the surface at which shadow rays start, in metres.
     pub(crate) fn ray_offset(&self) -> f64 {
         self.settings.view.ray_offset.map_or(self.scene.ray_offset(), f64::from)
     }
 }
 
-/// A view of everything, from a little above and on the lit side.
+/// Returns a view of the whole scene, from above on the lit side.
 fn overview(bounds: &Aabb, radius: f32, settings: &Settings) -> FlyCamera {
     let center = (bounds.min + bounds.max) * 0.5;
     let to_light = -settings.light.direction();

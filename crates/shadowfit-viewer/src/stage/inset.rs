@@ -8,20 +8,21 @@ use shadowfit::{Aabb, FittedMap, LightProjection};
 use shadowfit_params::figures::linear_map_tints;
 use shadowfit_render::Inset;
 
-/// Least width of a picture with full-size insets, in pixels; smaller pictures have smaller ones.
+/// Least width of a picture with full-size insets, in pixels. Smaller pictures have smaller insets.
 const FULL_WIDTH: f32 = 960.0;
 /// Full size of an inset, in pixels.
 const SIZE: [f32; 2] = [300.0, 200.0];
 /// Distance of insets from the picture's corner and from each other, in pixels, at full size.
 const MARGIN: f32 = 12.0;
-/// Height that stays free above several insets, as a share of the picture's.
+/// Free height above several insets, as a share of the picture's height.
 const FREE: f32 = 0.12;
 
-/// Lines along the light, from side to side of a map, on which its depths are looked at.
+/// Number of lines along the light, from side to side of a map, at which its depths are measured.
 const LINES: u8 = 9;
 
-/// Maps in the lower left corner of the part from the column `left` on of a picture of `size` pixels, the first one lowest.
-/// `depth_range` are the stored depths shown as black and white; those between which the scene lies if `None`.
+/// Returns maps in the lower left corner of a picture of `size` pixels, right of the column `left`, the first
+/// map lowest. `depth_range` are the stored depths shown as black and white; `None` for the depth range of
+/// the scene.
 pub(super) fn insets(
     shown: Range<usize>,
     maps: &[FittedMap],
@@ -33,7 +34,7 @@ pub(super) fn insets(
     let picture = size.map(|side| side as f32);
     let scale = (picture[0] / FULL_WIDTH).min(1.0);
     let margin = (MARGIN * scale).round();
-    // Several insets are as high as there is room for.
+    // Several insets share the available height.
     let room = (picture[1] * (1.0 - FREE) - margin) / shown.len().max(1) as f32 - margin;
     let height = (SIZE[1] * scale).round().min(room.floor()).max(1.0);
     let width = (height * SIZE[0] / SIZE[1]).round();
@@ -51,12 +52,13 @@ pub(super) fn insets(
     shown.enumerate().filter_map(inset).collect()
 }
 
-/// Colour of a map's frame, linear.
+/// Returns the linear colour of a map's frame.
 pub(super) fn tint(map: usize) -> Vec3 {
     linear_map_tints()[map % MAX_MAPS]
 }
 
-/// Least and greatest depth of the scene's box within a map: a window is deep, and the scene fills little of it.
+/// Returns the least and the greatest depth of the scene's box within a map. A window is deep, and the scene
+/// fills little of it.
 pub(super) fn depths(fit: &LightProjection, bounds: &Aabb) -> Option<[f32; 2]> {
     let world_from_uv = fit.uv_from_world.inverse();
     let [min, max] = [bounds.min, bounds.max].map(|corner| (corner.as_dvec3() - fit.origin).as_vec3());
@@ -64,7 +66,8 @@ pub(super) fn depths(fit: &LightProjection, bounds: &Aabb) -> Option<[f32; 2]> {
     let mut range = [1.0_f32, 0.0];
     for (u, v) in (0..LINES).flat_map(|u| (0..LINES).map(move |v| (place(u), place(v)))) {
         let [from, to] = [0.0, 1.0].map(|depth| world_from_uv.transform_point3(Vec3::new(u, v, depth)));
-        // Where the line is between each pair of the box's faces; of a line along a face that is everywhere or nowhere.
+        // The part of the line between each pair of the box's faces. For a line parallel to a pair, this is
+        // everything or nothing.
         let (a, b) = ((min - from) / (to - from), (max - from) / (to - from));
         let (enter, leave) = (a.min(b).max_element().max(0.0), a.max(b).min_element().min(1.0));
         if enter <= leave {
@@ -101,7 +104,7 @@ mod tests {
 
     #[test]
     fn grey_goes_over_the_scene_over_the_map_and_not_over_all_of_its_depth() {
-        // Ten metres deep along -y from y = 8 on, a square metre across; the scene is flat and far wider.
+        // Ten metres deep along -y from y = 8, one metre square across. The scene is flat and far wider.
         let uv_from_world = Mat4::from_cols_array_2d(&[
             [1.0, 0.0, 0.0, 0.0],
             [0.0, 0.0, -0.1, 0.0],

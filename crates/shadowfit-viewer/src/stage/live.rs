@@ -1,6 +1,6 @@
-//! Pictures judged against rays while they are shown: each one on a graphics card; without one, the next as soon as a
-//! thread is done with the last. Browsers have no threads, so what draws judges there, too: where the CPU draws, as
-//! rarely as a thread would.
+//! Judging of pictures against rays while they are shown. A graphics card judges each picture. Without one, a
+//! thread judges the next picture when the last one is done. Browsers have no threads, so the GPU judges
+//! there, too; if it is a software driver, as rarely as a thread would.
 
 use anyhow::{Result, anyhow};
 use shadowfit::{Camera, FittedMap, Technique};
@@ -13,18 +13,20 @@ use shadowfit_truth::PictureFigures;
 use super::shot::Shot;
 use crate::platform::IS_PAGE;
 
-/// Width of a picture that a thread judges, in pixels: enough for every artefact, and judged in a fraction of a second.
+/// Width of a picture that a thread judges, in pixels: enough for every artefact, and judged in a fraction of
+/// a second.
 const BACKGROUND_WIDTH: u32 = 480;
-/// How long a view must have stood still before a thread judges it, in seconds, unless it is asked for.
+/// Time for which a view must not change before a thread judges it, in seconds, unless the judged picture is
+/// shown.
 const STILL: f32 = 0.3;
-/// How often a view that does not stand still is judged by a thread, in seconds.
+/// Interval at which a thread judges a changing view, in seconds.
 const MOVING: f32 = 2.0;
-/// Most triangles that are moved to a new pose within a frame, so that frames do not stall.
+/// Greatest number of triangles that are moved to a new pose within a frame, so that frames do not stall.
 const MOST_POSED: usize = 150_000;
-/// Frames whose time is remembered until their sums come back.
+/// Greatest number of frames that wait for their sums.
 const FRAMES: usize = 8;
 
-/// The content of a picture: where any field differs, the picture is another one.
+/// The content of a picture. If any field differs, it is another picture.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Key {
     pub(super) camera: Camera,
@@ -35,27 +37,27 @@ pub(super) struct Key {
     pub(super) seconds: f32,
     /// Distance above the surface at which shadow rays start, in metres.
     pub(super) ray_offset: f64,
-    /// They differ in a view that stands still, too, once it is known what it showed.
+    /// Maps can change while the view does not, once the visible demand arrives.
     pub(super) maps: Vec<FittedMap>,
 }
 
-/// A picture that was judged, with its classes as a texture.
+/// A judged picture, with its classes as a texture.
 #[derive(Debug)]
 struct Judged {
     key: Key,
     view: wgpu::TextureView,
     size: [u32; 2],
-    /// The probe that it was judged by, whose depth buffer tells which surfaces it shows; `None` where the next frame
+    /// The probe of the judged picture, whose depth buffer identifies its surfaces; `None` if the next frame
     /// is judged again.
     seen: Option<ProbeTargets>,
 }
 
-/// A picture whose sums are on their way.
+/// A picture that waits for its sums.
 #[derive(Debug)]
 struct Drawn {
     key: Key,
     size: [u32; 2],
-    /// When it was drawn, by the stage's clock in seconds.
+    /// Time when it was drawn, by the stage's clock in seconds.
     at: f32,
 }
 
@@ -63,48 +65,49 @@ struct Drawn {
 #[derive(Debug)]
 struct Sums {
     of: Drawn,
-    /// `None` for a picture without a pixel that counts, such as one of the sky.
+    /// `None` for a picture without counted pixels, such as a picture of the sky.
     figures: Option<PictureFigures>,
-    /// How long the GPU judged it, in milliseconds; `None` where it does not, or is not timed.
+    /// GPU time of judging it, in milliseconds; `None` if the GPU does not judge, or is not timed.
     gpu_ms: Option<f32>,
 }
 
-/// Who judges pictures.
+/// The judge of pictures.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum JudgedBy {
     /// Threads, with rays of the CPU.
     #[default]
     Threads,
-    /// A graphics card, each picture.
+    /// A graphics card, for each picture.
     Gpu,
-    /// What a browser takes for one, as rarely as a thread would.
+    /// A browser's software GPU, as rarely as a thread would.
     SlowGpu,
-    /// Nobody: a browser has no threads, and WebGL2 no compute shaders.
+    /// None: a browser has no threads, and WebGL2 has no compute shaders.
     Nobody,
 }
 
 /// The judge of a side's pictures.
 #[derive(Debug, Default)]
 pub(super) struct Live {
-    /// Who judges.
+    /// The judge.
     pub(super) by: JudgedBy,
-    /// Why the GPU cannot judge this scene, if it should and threads do so instead.
+    /// Reason why threads judge this scene instead of the GPU.
     no_gpu: Option<String>,
     gpu: Option<LiveTruth>,
     background: Option<BackgroundJudge>,
     /// The picture that the thread judges, and its probe.
     started: Option<(Drawn, ProbeTargets)>,
-    /// When the thread last got a picture, by the stage's clock in seconds.
+    /// Time when the thread last got a picture, by the stage's clock in seconds.
     begun: Option<f32>,
     judged: Option<Judged>,
     sums: Option<Sums>,
-    /// The last pictures that the GPU got, by their numbers.
+    /// The last pictures sent to the GPU, by their numbers.
     drawn: Vec<(u64, Drawn)>,
-    /// The view of the frame before, and since when it has been the same, by the stage's clock in seconds.
+    /// The view of the previous frame, and the time since which it has not changed, by the stage's clock in
+    /// seconds.
     last: Option<(Key, f32)>,
-    /// Time of the scene's pose that the GPU's rays have.
+    /// Time of the scene's pose in the GPU's rays.
     posed: Option<f32>,
-    /// Pictures are judged at once, as scripts and headless pictures need it.
+    /// Whether pictures are judged at once, for scripts and headless pictures.
     pub(super) waits: bool,
 }
 
@@ -119,60 +122,60 @@ impl Live {
         Self { by, ..Self::default() }
     }
 
-    /// Forgets all pictures, for another scene.
+    /// Discards all pictures, for another scene.
     pub(super) fn forget(&mut self) {
         let waits = self.waits;
         let by = if self.no_gpu.is_some() { JudgedBy::Gpu } else { self.by };
-        // The thread stops judging.
+        // This also stops the thread.
         *self = Self { by, waits, ..Self::default() };
     }
 
-    /// Why pictures are judged otherwise than usual, as a line.
+    /// Returns why pictures are judged in an unusual way, as a line.
     pub(super) fn notice(&self) -> Option<String> {
-        self.no_gpu.as_ref().map(|why| format!("Pictures are judged now and then, by the CPU: {why}"))
+        self.no_gpu.as_ref().map(|why| format!("Pictures are judged at intervals, by the CPU: {why}"))
     }
 
-    /// The picture that was judged last.
+    /// Returns the last judged picture.
     pub(super) fn picture(&self) -> Option<JudgedPicture<'_>> {
         let judged = self.judged.as_ref()?;
         let depth = judged.seen.as_ref().map(ProbeTargets::depth_view);
         Some(JudgedPicture { classes: &judged.view, size: judged.size, camera: judged.key.camera, depth })
     }
 
-    /// The classes of the picture that was judged last: another texture for each.
+    /// Returns the classes of the last judged picture. Each picture has its own texture.
     pub(super) fn judged_view(&self) -> Option<wgpu::TextureView> {
         self.judged.as_ref().map(|judged| judged.view.clone())
     }
 
-    /// The figures that came back last, at a time of the stage's clock in seconds.
+    /// Returns the latest figures, at a time of the stage's clock in seconds.
     pub(super) fn figures(&self, clock: f32) -> Option<JudgedFigures> {
         let Sums { of, figures, .. } = self.sums.as_ref()?;
         Some(judged_figures(figures.as_ref()?, of.size, clock - of.at))
     }
 
-    /// How long the GPU judged the picture whose figures came back last, in milliseconds, after its probe was drawn.
+    /// Returns the GPU time of judging the picture of the latest figures, in milliseconds, without its probe.
     pub(super) fn gpu_ms(&self) -> Option<f32> {
         self.sums.as_ref()?.gpu_ms
     }
 
-    /// Whether the view that was drawn last has been judged, and its sums have arrived.
+    /// Returns whether the last drawn view has been judged, and its sums have arrived.
     pub(super) fn is_up_to_date(&self) -> bool {
         let (Some(judged), Some(sums), Some((last, _))) = (&self.judged, &self.sums, &self.last) else { return false };
         judged.key == *last && sums.of.key == *last
     }
 
-    /// Whether the thread is idle.
+    /// Returns whether the thread is idle.
     #[cfg(test)]
     pub(super) fn is_idle(&self) -> bool {
         !self.background.as_ref().is_some_and(BackgroundJudge::is_busy)
     }
 
-    /// Judges the view that is about to be drawn, and takes results that have arrived. Returns whether the maps were
-    /// drawn for it, so that the picture need not draw them again.
+    /// Judges the view that is about to be drawn, and takes results that have arrived. Returns whether the
+    /// maps were drawn for it, so that the picture need not draw them again.
     ///
     /// # Errors
     ///
-    /// When the view cannot be drawn, or the scene is too large for the adapter.
+    /// If the view cannot be drawn, or the scene is too large for the adapter.
     pub(super) fn judge(
         &mut self,
         evaluator: &mut Evaluator,
@@ -221,15 +224,15 @@ impl Live {
             return self.start(evaluator, shot, view, key, size);
         }
         let maps_stay = self.judge_on_gpu(evaluator, shot, view, key, size)?;
-        // Later frames of other views need to know what this one showed.
+        // Later frames of other views need to know its surfaces.
         if let Some(judged) = &mut self.judged {
             judged.seen = evaluator.take_probe();
         }
         Ok(maps_stay)
     }
 
-    /// Makes rays of the present pose, at once where that is quick, otherwise on a thread for a later frame. Returns
-    /// whether they exist.
+    /// Makes rays of the current pose: at once if that is quick, otherwise on a thread for a later frame.
+    /// Returns whether they exist.
     fn pose_rays(&self, shot: &mut Shot<'_>) -> bool {
         let is_small = shot.scene.latest_rays().is_some_and(|(rays, _)| rays.tracer.len() <= MOST_POSED);
         if self.waits || is_small {
@@ -283,7 +286,7 @@ impl Live {
         Ok(true)
     }
 
-    /// Draws the probe for the thread, and starts it.
+    /// Draws the probe for the thread, and starts the thread's work.
     fn start(
         &mut self,
         evaluator: &mut Evaluator,
@@ -311,7 +314,7 @@ impl Live {
                 self.take(shot.gpu)?;
             }
         }
-        // Measuring crawl has drawn the maps of the view before in place of this view's.
+        // Measuring crawl has replaced this view's maps by the previous view's.
         Ok(!measures_crawl)
     }
 
@@ -321,7 +324,7 @@ impl Live {
         let gpu_ms = self.gpu.as_ref().and_then(LiveTruth::milliseconds);
         if let Some(tally) = tally {
             let place = self.drawn.iter().position(|(picture, _)| *picture == tally.picture);
-            // Those before it were overtaken.
+            // Earlier pictures were overtaken.
             let of = place.and_then(|place| self.drawn.drain(..=place).next_back());
             if let Some((_, of)) = of {
                 self.sums = Some(Sums { of, figures: tally.figures(), gpu_ms });
@@ -337,13 +340,13 @@ impl Live {
     }
 }
 
-/// The size at which a thread, or a GPU that is as slow, judges a picture of a size.
+/// Returns the size at which a thread or a software GPU judges a picture of a size.
 fn background_size(size: [u32; 2]) -> [u32; 2] {
     let scale = (BACKGROUND_WIDTH as f32 / size[0] as f32).min(1.0);
     size.map(|side| ((side as f32 * scale).round() as u32).max(1))
 }
 
-/// Figures for the panel.
+/// Converts figures for the panel.
 pub(crate) fn judged_figures(figures: &PictureFigures, size: [u32; 2], age: f32) -> JudgedFigures {
     JudgedFigures {
         wrong: figures.wrong as f32,
@@ -351,7 +354,7 @@ pub(crate) fn judged_figures(figures: &PictureFigures, size: [u32; 2], age: f32)
         false_light: figures.false_light as f32,
         hole: figures.hole as f32,
         edge: figures.edge as f32,
-        mean_error: figures.mean_error as f32,
+        light_error: figures.light_error as f32,
         uncovered: figures.uncovered as f32,
         pixels_per_texel: figures.pixels_per_texel.map(|quantiles| quantiles.map(|value| value as f32)),
         crawl: figures.crawl.map(|crawl| crawl as f32),

@@ -1,4 +1,5 @@
-//! When pictures are judged, and of which one the figures are: by the GPU in each frame, and by threads now and then.
+//! The times when pictures are judged, and the picture of the figures: by the GPU in each frame, and by
+//! threads at intervals.
 
 use shadowfit::Technique;
 use shadowfit_params::tool::ViewMode;
@@ -11,7 +12,7 @@ use super::*;
 
 const SIZE: [u32; 2] = [160, 90];
 
-/// The default scene, judged by the GPU in each frame or by threads.
+/// Returns a stage with the default scene, judged by the GPU in each frame or by threads.
 fn stage(on_gpu: bool) -> (Stage, RenderTarget) {
     let mut stage = Stage::new(renderer_gpu(), default_scene(), 1).expect("the default scene");
     stage.prepared_scene().rays();
@@ -23,7 +24,7 @@ fn stage(on_gpu: bool) -> (Stage, RenderTarget) {
     (stage, target)
 }
 
-/// Lets the stage's clock go on while nothing moves.
+/// Advances the stage's clock while nothing moves.
 fn wait(stage: &mut Stage, seconds: f32) {
     stage.update(&FlyInput::default(), seconds);
 }
@@ -45,7 +46,7 @@ fn judge(stage: &mut Stage, target: &RenderTarget) {
     panic!("it is never judged");
 }
 
-/// Another view: a step to the side.
+/// Changes the view: moves the camera to the side.
 fn step(stage: &mut Stage) {
     stage.camera.position.x += 0.01;
 }
@@ -95,13 +96,13 @@ fn gpu_a_picture_whose_verdicts_nothing_shows_is_judged_once_they_are_shown() {
 #[test]
 fn gpu_a_view_that_stands_still_is_judged_again_when_its_maps_change() {
     let (mut stage, target) = stage(false);
-    // Tight maps follow whatever was seen, where windows stay while they serve.
+    // Focused maps follow the visible demand, while windows keep their place.
     stage.settings.technique = Technique::preset("focused-4").expect("a preset").with_resolution(256, 256);
     stage.side.live.waits = true;
     draw(&mut stage, &target);
     let maps = |stage: &Stage| stage.side.evaluator.drawn_fits().to_vec();
     let figures = |stage: &Stage| stage.judged_figures().expect("it was judged");
-    // What the first frame showed places the maps of a later one.
+    // The visible demand of the first frame places the maps of a later one.
     let (first, before) = (maps(&stage), figures(&stage));
     let has_changed = (0..1000).any(|_| {
         std::thread::sleep(std::time::Duration::from_millis(5));
@@ -132,7 +133,7 @@ fn gpu_the_age_of_figures_is_told_by_the_clock_of_the_stage() {
 fn gpu_threads_judge_a_moving_view_every_two_seconds_and_one_after_the_other_where_errors_are_shown() {
     let (mut stage, target) = stage(false);
     judge(&mut stage, &target);
-    // Whether a step of so many seconds has the next picture judged.
+    // Whether a step of this many seconds starts judging the next picture.
     let is_begun = |stage: &mut Stage, seconds: f32| {
         wait(stage, seconds);
         step(stage);
@@ -155,7 +156,7 @@ fn gpu_threads_judge_a_moving_view_every_two_seconds_and_one_after_the_other_whe
     assert!(picture.depth.is_some(), "it tells which surfaces it shows");
 }
 
-/// Draws the same frame until the threads are done.
+/// Draws the same frame until the threads are idle.
 fn judge_what_is_begun(stage: &mut Stage, target: &RenderTarget) {
     while !stage.side.live.is_idle() {
         std::thread::sleep(std::time::Duration::from_millis(5));
@@ -170,7 +171,7 @@ fn gpu_maps_that_are_drawn_for_the_judge_are_not_shown_as_kept() {
     draw(&mut stage, &target);
     let drawn = stage.side.evaluator.renderer.sun().updates();
     let maps = stage.settings.technique.maps.count() as usize;
-    // Once each: what moves over a map is drawn with it.
+    // Once each: moving casters are drawn with it.
     let is_whole = |update: &&UpdatedRect| matches!(update.content, UpdateKind::All | UpdateKind::Static);
     assert_eq!(drawn.iter().filter(is_whole).count(), maps, "{drawn:?}");
     assert_eq!(drawn.len(), maps, "{drawn:?}");

@@ -1,5 +1,5 @@
-//! The view from outside: the camera's frustum in the slices that read a map each, the maps' boxes in their tints and
-//! the sun's direction, drawn as lines for a second camera that has all of them in its picture.
+//! The view from outside: the slices of the camera's frustum that the maps serve, the maps' boxes in their
+//! tints, and the sun's direction, drawn as lines for a second camera that has all of them in its picture.
 
 use glam::{DVec3, Vec3, Vec4};
 use shadowfit::culling::{Reader, caster_volumes};
@@ -11,24 +11,23 @@ use shadowfit_wgpu::ShadowMapDescriptor;
 
 use super::fitted::Fitted;
 
-/// Colour of the camera's frustum and its slices: white, which no map has.
+/// Colour of the camera's frustum and its slices: white, which is no map's tint.
 const FRUSTUM_COLOR: Vec4 = Vec4::ONE;
 
 /// Vertical field of view of the outside camera, in radians.
 const FOV_Y: f32 = 1.0;
 
-/// Distance of the outside camera, as a multiple of the one at which all lines just fill its picture.
+/// Distance of the outside camera, relative to the distance at which all lines just fill its picture.
 const ROOM: f32 = 1.1;
 
 /// Length of the arrow along the light, as a share of half the diagonal of the box's face.
 const ARROW: f32 = 0.4;
 
-/// How much of a tint the edges of a culling volume have.
+/// Brightness of a culling volume's edges, as a share of the tint.
 const VOLUME_SHARE: f32 = 0.45;
 
-/// The slices of the view, and for each map that some point reads its box, an arrow along the light's direction of
-/// travel into it, and the volume of the casters that it needs, in the map's tint. The view is drawn as far as the maps
-/// reach.
+/// Returns the slices of the view, and for each map that is read: its box, an arrow into it along the light's
+/// direction of travel, and its caster volume, in the map's tint. The view is drawn as far as the maps reach.
 pub(crate) fn lines(fitted: &Fitted, maps: &[FittedMap], descriptor: &ShadowMapDescriptor) -> Vec<Line> {
     let mut lines = boxes(fitted);
     let (Some(camera), Some(frustum)) = (fitted.camera, fitted.frustum()) else { return lines };
@@ -37,7 +36,7 @@ pub(crate) fn lines(fitted: &Fitted, maps: &[FittedMap], descriptor: &ShadowMapD
     if caster_volumes(maps, &descriptor.reading(), &reader, &[frustum], &mut volumes).is_ok() {
         for ((map, volume), tint) in maps.iter().zip(&volumes).zip(linear_map_tints()) {
             let color = (tint * VOLUME_SHARE).extend(1.0);
-            // A volume is not bounded toward the light.
+            // A volume is unbounded toward the light.
             let end = map.projection.corners().map(|corner| corner.dot(map.projection.direction));
             let end = end.into_iter().fold(f32::MAX, f32::min);
             lines.extend(volume_edges(
@@ -51,7 +50,8 @@ pub(crate) fn lines(fitted: &Fitted, maps: &[FittedMap], descriptor: &ShadowMapD
     lines
 }
 
-/// Edges of a volume, cut where it is nearer to the light than `end`, in metres along it from the volume's origin.
+/// Returns the edges of a volume, cut off nearer to the light than `end`, in metres along it from the
+/// volume's origin.
 fn volume_edges(volume: &CasterVolume, direction: Vec3, end: f32, color: Vec4) -> Vec<Line> {
     let mut planes = volume.active_planes().to_vec();
     planes.push(direction.extend(-end));
@@ -87,7 +87,7 @@ fn volume_edges(volume: &CasterVolume, direction: Vec3, end: f32, color: Vec4) -
     edges
 }
 
-/// The slices of the view, and the boxes of the maps with an arrow each.
+/// Returns the slices of the view, and the boxes of the maps with an arrow each.
 fn boxes(fitted: &Fitted) -> Vec<Line> {
     let mut lines = Vec::new();
     let reach = reach(fitted);
@@ -102,20 +102,20 @@ fn boxes(fitted: &Fitted) -> Vec<Line> {
     lines
 }
 
-/// Greatest view depth of a corner of a map's box, in metres.
+/// Returns the greatest view depth of a corner of a map's box, in metres.
 fn reach(fitted: &Fitted) -> f32 {
     let Some(camera) = fitted.camera else { return 0.0 };
     let depth = |corner: DVec3| (corner - camera.eye).dot(camera.forward.as_dvec3().normalize()) as f32;
     box_corners(fitted).map(depth).fold(0.0, f32::max)
 }
 
-/// Corners of the boxes of all maps that some point reads, world space, in metres.
+/// Returns the corners of the boxes of all maps that are read, in world space, in metres.
 fn box_corners(fitted: &Fitted) -> impl Iterator<Item = DVec3> {
     let read = fitted.maps.iter().enumerate().filter(|(index, _)| fitted.slice(*index).is_some());
     read.flat_map(|(_, map)| map.projection.corners().map(|corner| map.projection.origin + corner.as_dvec3()))
 }
 
-/// An arrow along the light from the middle of the box's near face, the one toward the light.
+/// Returns an arrow along the light from the middle of the box's near face, toward the light.
 fn arrow(fit: &LightProjection, color: Vec4) -> [Line; 3] {
     let mut corners = fit.corners();
     corners.sort_by(|a, b| a.dot(fit.direction).total_cmp(&b.dot(fit.direction)));
@@ -129,7 +129,7 @@ fn arrow(fit: &LightProjection, color: Vec4) -> [Line; 3] {
         .map(|[from, to]| Line { ends: [world(from), world(to)], color })
 }
 
-/// A camera that sees all of the frustum and the boxes from behind and above the inner camera.
+/// Returns a camera that shows all of the frustum and the boxes from behind and above the inner camera.
 pub(crate) fn camera(inner: &Camera, fitted: &Fitted) -> PerspectiveCamera {
     let mut points: Vec<DVec3> = vec![inner.eye];
     let frustum = fitted.frustum().and_then(|frustum| frustum.slice(frustum.near, reach(fitted)).ok());
@@ -169,7 +169,7 @@ mod tests {
 
     use super::*;
 
-    /// Four maps far from the world's origin.
+    /// Returns four maps far from the world's origin.
     fn fitted() -> Fitted {
         let camera = PerspectiveCamera {
             eye: DVec3::new(1e5, 3.0, -2e4),

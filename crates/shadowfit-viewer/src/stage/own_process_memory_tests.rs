@@ -1,5 +1,5 @@
-//! Memory that frames take, and devices with little memory. Each test runs in a separate process, because it measures or
-//! limits the memory of the process.
+//! Memory use of frames, and devices with little memory. Each test runs in a separate process, because it
+//! measures or limits the memory of the process.
 
 use rustix::process::{Resource, Rlimit};
 use shadowfit::settings::FilterKind;
@@ -12,10 +12,10 @@ use shadowfit_testing::{adapter_choice, open_renderer_gpu};
 use super::*;
 use crate::platform::memory;
 
-/// Frames until a view has all its maps and pipelines, and frames after them.
+/// Frames until a view has all its maps and pipelines, and number of later frames.
 const FRAMES: [u32; 2] = [6, 20];
-/// Bytes that drivers and allocators may keep from the later frames. A shader that is compiled in each frame takes ten
-/// times as much.
+/// Greatest memory growth by drivers and allocators over the later frames, in bytes. Compiling a shader in
+/// each frame would take ten times this.
 const MOST: u64 = 10_000_000;
 
 #[test]
@@ -63,7 +63,8 @@ fn a_technique_that_stays_takes_no_more_memory_with_each_frame() {
     }
 }
 
-/// Fails where the later frames take more memory than the first ones. A system that does not tell has nothing to be tested.
+/// Asserts that the later frames take no more memory than the first ones. Skipped on systems that do not
+/// report memory.
 fn assert_flat(what: &str, mut draw: impl FnMut(u32)) {
     draw(FRAMES[0]);
     let Some(before) = memory() else { return };
@@ -109,7 +110,7 @@ fn gpu_techniques_leave_no_objects_behind() {
     assert_eq!(objects(), second);
 }
 
-/// Leaves the process, which is that of one test, as much memory as it has now, and so many bytes more.
+/// Limits the memory of this process, which runs a single test, to its current size plus `bytes`.
 fn leave(bytes: u64) {
     let status = std::fs::read_to_string("/proc/self/status").expect("Linux tells");
     let line = status.lines().find_map(|line| line.strip_prefix("VmSize:")).expect("a size");
@@ -169,7 +170,7 @@ fn gpu_a_scene_that_there_is_no_memory_for_gets_smaller_textures_and_a_note() {
     }
     leave(400 << 20);
     stage.set_scene(scene).expect("smaller textures");
-    // Other memory than that of the GPU is no concern here.
+    // Only the GPU's memory is tested here.
     set_limit(None);
     assert!(stage.scene().notes.iter().any(|note| note.contains("halved")), "{:?}", stage.scene().notes);
     let target = stage.target([96, 54]);

@@ -8,14 +8,14 @@ use shadowfit_render::{FlyCamera, FlyInput, Gpu, RenderTarget, camera::TURN_SPEE
 
 use super::{Stage, compare};
 
-/// The sample on show.
+/// The current sample.
 #[derive(Debug)]
 pub(crate) struct SampleShow {
     pub(crate) sample: &'static Sample,
     pub(crate) variant: Option<&'static SampleVariant>,
     pub(crate) values: SampleValues,
     drawer: SampleDrawer,
-    /// Notes about options that could not be drawn as asked for.
+    /// Notes about options that could not be drawn as requested.
     message: Option<String>,
     /// Target of the right half.
     beside: Option<RenderTarget>,
@@ -29,7 +29,7 @@ impl SampleShow {
         (self.drawer.waits, self.beside) = (waits, None);
     }
 
-    /// Goes back to the values of the source, or of the variant.
+    /// Restores the values of the source, or of the variant.
     pub(super) fn reset(&mut self) {
         self.values =
             SampleValues::of_variant(self.sample, self.variant).unwrap_or_else(|_| SampleValues::new(self.sample));
@@ -37,7 +37,7 @@ impl SampleShow {
 }
 
 impl Stage {
-    /// Shows the scene that has just been set, which is that of a sample, as the sample or one of its variants.
+    /// Shows a sample or one of its variants. The current scene must be the sample's scene.
     pub fn set_sample(&mut self, sample: &'static Sample, variant: Option<&'static SampleVariant>) {
         let values = SampleValues::of_variant(sample, variant).unwrap_or_else(|_| SampleValues::new(sample));
         let (camera, lens) = sample.camera();
@@ -59,12 +59,12 @@ impl Stage {
         self.sample = Some(SampleShow { sample, variant, values, drawer, message: None, beside: None });
     }
 
-    /// The sample on show, if it is one.
+    /// Returns the current sample, if there is one.
     pub(crate) fn sample(&self) -> Option<&SampleShow> {
         self.sample.as_ref()
     }
 
-    /// Sets the values of the sample on show.
+    /// Sets the values of the current sample.
     pub(crate) fn set_sample_values(&mut self, values: SampleValues) {
         let Some(show) = &mut self.sample else { return };
         let technique = show.sample.technique(&values);
@@ -78,7 +78,7 @@ impl Stage {
         show.values = values;
     }
 
-    /// Sets an option of the sample on show by its index.
+    /// Sets an option of the current sample by its index.
     pub(crate) fn set_sample_option(&mut self, option: usize, value: f32) {
         if let Some(mut values) = self.sample.as_ref().map(|show| show.values.clone()) {
             values.set(option, value);
@@ -86,30 +86,30 @@ impl Stage {
         }
     }
 
-    /// Sets an option of the sample on show by name and text.
+    /// Sets an option of the current sample by name and text.
     ///
     /// # Errors
     ///
-    /// If no sample is on show, or it has no such option or value.
+    /// If there is no sample, or it lacks the option or value.
     pub fn set_sample_text(&mut self, option: &str, text: &str) -> Result<()> {
-        let show = self.sample.as_ref().context("no sample is on show")?;
+        let show = self.sample.as_ref().context("no sample is shown")?;
         let mut values = show.values.clone();
         values.set_from_str(option, text)?;
         self.set_sample_values(values);
         Ok(())
     }
 
-    /// Whether R has a special place for the camera in the sample on show.
+    /// Returns whether R has a special view in the current sample.
     pub(crate) fn has_sample_reset(&self) -> bool {
         self.sample_reset().is_some()
     }
 
-    /// Whether the picture is that of a sample's own renderer, to which technique and views do not apply.
+    /// Returns whether a sample's own renderer draws the picture. Technique and views do not apply to it.
     pub(crate) fn draws_sample(&self) -> bool {
         self.sample.as_ref().is_some_and(|show| !show.sample.is_technique(&show.values))
     }
 
-    /// Names of both halves of the picture, where a sample shows something else in the right one.
+    /// Returns names of both halves of the picture, if a sample shows something else in the right one.
     pub(crate) fn sample_halves(&self) -> Option<[String; 2]> {
         let show = self.sample.as_ref()?;
         show.values.beside()?;
@@ -121,12 +121,12 @@ impl Stage {
         Some([left.to_owned(), label.unwrap_or_default().to_owned()])
     }
 
-    /// Notes of the sample.
+    /// Returns the notes of the sample.
     pub(super) fn sample_message(&self) -> Option<&str> {
         self.sample.as_ref().and_then(|show| show.message.as_deref())
     }
 
-    /// Draws the sample on show, and the right half beside it, into a target.
+    /// Draws the current sample, and the right half beside it, into a target.
     pub(super) fn draw_sample(&mut self, target: &RenderTarget) {
         let Some(mut show) = self.sample.take() else { return };
         show.message = None;
@@ -142,7 +142,7 @@ impl Stage {
         self.sample = Some(show);
     }
 
-    /// The camera of a sample's picture of the given size: the sources have perspectives alone.
+    /// Returns the camera of a sample's picture of the given size. The sources only have perspective cameras.
     pub(crate) fn sample_camera(&self, size: [u32; 2]) -> PerspectiveCamera {
         self.camera.perspective(&self.settings.camera, size[0] as f32 / size[1] as f32)
     }
@@ -175,14 +175,14 @@ impl Stage {
         input
     }
 
-    /// Where R puts the camera, if not back to the first view.
+    /// Returns the view to which R moves the camera, if not the initial one.
     pub(super) fn sample_reset(&self) -> Option<FlyCamera> {
         let (eye, forward) = self.sample.as_ref()?.sample.controls.reset?;
         Some(look(eye, forward))
     }
 }
 
-/// The view mode for values that a technique draws, and whether there are shadows.
+/// Returns the view mode for values that a technique draws, and whether there are shadows.
 fn view(sample: &Sample, values: &SampleValues) -> (ViewMode, bool) {
     let mode = if sample.is_tinted(values) { ViewMode::Maps } else { ViewMode::Final };
     (mode, values.choice("shadows") != "off")

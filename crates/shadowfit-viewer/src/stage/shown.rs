@@ -1,4 +1,4 @@
-//! The artefact on show: from the search for its view to its cure.
+//! The shown artefact: from the search for its view to its cure.
 
 use shadowfit::Technique;
 use shadowfit_egui::Artefact;
@@ -11,23 +11,23 @@ use super::artefact::{self, Found, Search};
 
 /// Message when no view of a scene shows an artefact.
 const NOT_FOUND: &str =
-    "No place in this scene shows this well: nothing throws a shadow on a surface that faces the light.";
+    "This scene cannot show this artefact well: no object casts a shadow on a surface that faces the light.";
 
-/// The artefact on show.
+/// The shown artefact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shown {
-    /// Which one.
+    /// The artefact.
     pub artefact: Artefact,
     /// Whether its cure has been applied.
     pub fixed: bool,
 }
 
-/// The artefact on show, with the camera and settings from before it.
+/// The shown artefact, with the camera and settings before it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct ArtefactShow {
     shown: Option<Shown>,
     before: Option<(Settings, FlyCamera)>,
-    /// The technique that shows or fixes it, until the user takes another one.
+    /// The technique that shows or fixes it, until the user chooses another one.
     technique: Technique,
     /// The technique that shows it.
     ill: Technique,
@@ -37,43 +37,43 @@ pub(crate) struct ArtefactShow {
 }
 
 impl Stage {
-    /// The artefact on show, if any.
+    /// Returns the shown artefact, if any.
     pub fn shown(&self) -> Option<Shown> {
         self.artefact.shown
     }
 
-    /// A note that no view of the scene shows the artefact.
+    /// Returns a note if no view of the scene shows the artefact.
     pub fn notice(&self) -> Option<&str> {
         let shown = self.artefact.shown.filter(|shown| !shown.fixed && !self.artefact.found);
         shown.map(|_| NOT_FOUND)
     }
 
-    /// A sentence that says what to look for in the view of the artefact; empty where there is none.
+    /// Returns a sentence that tells where to look in the view of the artefact; empty if there is none.
     pub fn narration(&self) -> &str {
         let artefact = &self.artefact;
         if self.is_missed() { NOT_FOUND } else { &artefact.narration }
     }
 
-    /// Changes by the cure of the artefact, a line each.
+    /// Returns the changes by the cure of the artefact, a line each.
     pub fn cure_changes(&self) -> &[String] {
         &self.artefact.changes
     }
 
-    /// Moves camera and settings so that an artefact is plainly visible. Takes until a view is found.
+    /// Moves camera and settings so that an artefact is clearly visible. Blocks until a view is found.
     pub fn show_artefact(&mut self, artefact: Artefact) {
         let found = self.search(artefact).run();
         self.show_found(found);
     }
 
-    /// Input of the search for the view of an artefact, which can run on a thread.
+    /// Returns the input of the search for the view of an artefact, which can run on a thread.
     pub(crate) fn search(&self, artefact: Artefact) -> Search {
         let (settings, camera) = self.before_artefact();
         let lens = camera.perspective(&settings.camera, 1.0);
         Search { artefact, scene: self.scene.snapshot(), settings, lens }
     }
 
-    /// Settings and camera from before the artefact on show. Where the technique was changed since, that technique and
-    /// the present camera are kept.
+    /// Returns settings and camera before the shown artefact. If the technique was changed since, returns the
+    /// current technique and camera.
     pub(crate) fn before_artefact(&self) -> (Settings, FlyCamera) {
         let mut settings = self.settings;
         match self.artefact.before.filter(|_| self.settings.technique == self.artefact.technique) {
@@ -85,7 +85,7 @@ impl Stage {
         }
     }
 
-    /// Shows the view that was found. Settings that do not matter for it stay as they are.
+    /// Shows the view that was found. Settings that do not affect it stay.
     pub(crate) fn show_found(&mut self, found: Found) {
         let before = self.before_artefact();
         take_shown(&mut self.settings, &found.settings);
@@ -103,7 +103,7 @@ impl Stage {
         };
     }
 
-    /// Cures an artefact: shows it first if it is not on show.
+    /// Cures an artefact, after showing it if it is not shown yet.
     pub fn fix_artefact(&mut self, artefact: Artefact) {
         if self.artefact.shown.is_none_or(|shown| shown.artefact != artefact) {
             self.show_artefact(artefact);
@@ -119,23 +119,23 @@ impl Stage {
         self.artefact.technique = self.settings.technique;
     }
 
-    /// Stops showing an artefact; settings and camera stay.
+    /// Stops showing an artefact. Settings and camera stay.
     pub fn close_artefact(&mut self) {
         self.artefact = ArtefactShow::default();
     }
 
-    /// Whether no view of the scene shows the artefact on show.
+    /// Returns whether no view of the scene shows the shown artefact.
     pub(crate) fn is_missed(&self) -> bool {
         self.artefact.shown.is_some() && !self.artefact.found
     }
 
-    /// The technique that shows the artefact on show, also when it is fixed.
+    /// Returns the technique that shows the artefact, even if it is fixed.
     pub(crate) fn ill_technique(&self) -> Technique {
         self.artefact.ill
     }
 
-    /// Shows the artefact of a link, after its settings and its camera were set. `before` and `camera` are the settings and
-    /// the camera from before it, and `ill` is the technique that shows it.
+    /// Shows the artefact of a link, after its settings and its camera were set. `before` and `camera` are
+    /// the settings and the camera before it, and `ill` is the technique that shows it.
     pub(crate) fn resume_artefact(&mut self, shown: Shown, before: &Settings, camera: FlyCamera, ill: Technique) {
         let Shown { artefact, fixed } = shown;
         let settings = self.settings.with_technique(ill);
@@ -152,7 +152,7 @@ impl Stage {
         };
     }
 
-    /// All texts about the artefact on show.
+    /// Returns all texts about the shown artefact.
     pub(crate) fn artefact_show(&self) -> &ArtefactShow {
         &self.artefact
     }
@@ -163,7 +163,7 @@ impl Stage {
     }
 }
 
-/// Takes over the settings that show an artefact.
+/// Copies the settings that show an artefact.
 fn take_shown(settings: &mut Settings, from: &Settings) {
     settings.technique = from.technique;
     let (camera, other) = (&mut settings.camera, &from.camera);
@@ -177,7 +177,7 @@ fn take_shown(settings: &mut Settings, from: &Settings) {
     (view.shadows, view.outside_beside) = (from.shadows, from.outside_beside);
 }
 
-/// Differences of the settings, a line for each parameter: "Constant bias: 0 → 1 texels".
+/// Returns the differences of the settings, a line for each parameter: "Constant bias: 0 → 1 texels".
 pub(crate) fn changes(before: &Settings, after: &Settings) -> Vec<String> {
     let differs = PARAMETERS.iter().filter(|parameter| !parameter.is_equal(before, after));
     differs
@@ -188,7 +188,7 @@ pub(crate) fn changes(before: &Settings, after: &Settings) -> Vec<String> {
         .collect()
 }
 
-/// A value as text, without its unit.
+/// Returns a value as text, without its unit.
 fn value(settings: &Settings, parameter: &Parameter) -> String {
     let number = |value: f64| format!("{value:.3}").trim_end_matches('0').trim_end_matches('.').to_owned();
     match (parameter.get(settings), &parameter.kind) {
@@ -223,13 +223,13 @@ mod tests {
         assert_ne!(stage.settings.technique, first.technique);
         let near = shadowfit_study::near_of(&stage.bounds());
         assert_eq!((stage.settings.camera.height, stage.settings.camera.near), (None, near));
-        // A second artefact follows the technique from before the first one.
+        // A second artefact is based on the technique before the first one.
         stage.settings.camera.fov_y *= 1.1;
         let (before, _) = stage.before_artefact();
         assert_eq!((before.technique, before.view), (first.technique, first.view));
         assert_eq!((before.camera.height, before.camera.near), (Some(10.0), 9.0));
         assert_eq!((before.light.azimuth, before.camera.fov_y), (first.light.azimuth + 0.5, first.camera.fov_y * 1.1));
-        // Unless a person has taken another one.
+        // Unless the user has chosen another one.
         stage.settings.technique = first.technique.with_count(2);
         let (before, camera) = stage.before_artefact();
         assert_eq!((before, camera), (stage.settings, stage.camera));

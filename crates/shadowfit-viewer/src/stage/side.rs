@@ -21,24 +21,24 @@ pub(super) struct Side {
     pub(super) evaluator: Evaluator,
     /// The last fit. Each frame fits again, unless the fit is frozen.
     pub(super) fitted: Option<Fitted>,
-    /// What it was given.
+    /// Inputs of the last fit.
     inputs: Inputs,
     pub(super) statistics: Statistics,
     pub(super) live: Live,
-    /// Whether pictures follow each other in a window: nothing waits for rays then.
+    /// Whether pictures are consecutive frames of a window. Then nothing waits for rays.
     follows: bool,
-    /// Camera of the picture that was drawn last, until its depth buffer is read.
+    /// Camera of the last drawn picture, until its depth buffer is read.
     unread: Option<Camera>,
-    /// The picture that was drawn last, if it is known.
+    /// The last drawn picture, if it is known.
     picture: Option<PictureKey>,
-    /// Why the settings cannot be shown as they are.
+    /// Reason why the settings cannot be shown unchanged.
     pub(super) problem: Option<String>,
     /// The last maps that the device had no memory for.
     no_room: Option<NoRoom>,
 }
 
 impl Side {
-    /// A side whose pictures have `samples` per pixel.
+    /// Makes a side whose pictures have `samples` per pixel.
     ///
     /// # Errors
     ///
@@ -60,7 +60,7 @@ impl Side {
         })
     }
 
-    /// The same on another device, with nothing drawn yet; a frozen fit stays.
+    /// Makes the same side on another device, with nothing drawn yet. A frozen fit stays.
     ///
     /// # Errors
     ///
@@ -74,16 +74,16 @@ impl Side {
         Ok(side)
     }
 
-    /// From now on pictures follow each other in a window: visible points are counted in depth buffers, and not by
-    /// rays. Counts come a frame or two late, whenever the GPU is done, so pictures may differ from run to run. Rays
-    /// are still used where the GPU cannot count, and for the first view after a cut. Static casters are kept in the
-    /// shadow maps, too.
+    /// Treats pictures as consecutive frames of a window from now on. Visible points are counted in depth
+    /// buffers, and not by rays. Counts arrive a frame or two late, as soon as the GPU is done, so pictures
+    /// may differ from run to run. Rays are still used if the GPU cannot count, and for the first view after
+    /// a cut. Static casters are kept in the shadow maps, too.
     pub(super) fn follow(&mut self) {
         self.sun_mut().set_caching(true);
         self.follows = true;
     }
 
-    /// The side's sun.
+    /// Returns the side's sun.
     pub(super) fn sun(&self) -> &SunShadows {
         self.evaluator.renderer.sun()
     }
@@ -92,24 +92,24 @@ impl Side {
         self.evaluator.renderer.sun_mut()
     }
 
-    /// Whether visible points are counted in depth buffers.
+    /// Returns whether visible points are counted in depth buffers.
     fn reads_depths(&self) -> bool {
         self.follows && self.sun().can_record_demand()
     }
 
-    /// Forgets all frames, for another scene.
+    /// Discards all frames, for another scene.
     pub(super) fn scene_changed(&mut self) {
         self.sun_mut().reset();
         (self.fitted, self.picture) = (None, None);
         self.live.forget();
     }
 
-    /// Starts again with a view that is unrelated to the one before; a frozen fit stays.
+    /// Starts again with a view that is unrelated to the previous one. A frozen fit stays.
     pub(super) fn cut(&mut self, is_frozen: bool) {
         self.fitted = self.fitted.take().filter(|_| is_frozen);
     }
 
-    /// Draws the next picture even if it would be as the last one.
+    /// Draws the next picture even if it would equal the last one.
     pub(super) fn forget_picture(&mut self) {
         self.picture = None;
     }
@@ -156,7 +156,7 @@ impl Side {
         Ok(Fitted::new(view.camera, technique, &fitted))
     }
 
-    /// Whether the present shadow map can hold fitted maps.
+    /// Returns whether the current shadow map can hold fitted maps.
     fn holds(&self, fitted: &Fitted) -> bool {
         let map = self.evaluator.renderer.shadow_map().descriptor();
         let fits_into_a_layer =
@@ -174,13 +174,14 @@ impl Side {
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         let clip_from_world = camera.clip_from_world(depth);
         let recorded = self.sun_mut().record_demand(&mut encoder, target.depth_view(), clip_from_world, depth);
-        // A camera that shows nothing has no maps either; the fit reports that.
+        // A camera that shows nothing has no maps either, which the fit reports.
         if recorded == Ok(true) {
             gpu.submit([encoder.finish()]);
         }
     }
 
-    /// Share of the pixels whose edges were traced of those that face the light, in per cent; a frame or two late.
+    /// Returns the share of pixels with traced edges among the facing pixels, in per cent, a frame or two
+    /// late.
     pub(super) fn traced_share(&mut self) -> Option<f32> {
         let renderer = &mut self.evaluator.renderer;
         let counts = renderer.take_edge_counts().or(renderer.edge_counts())?;

@@ -1,5 +1,5 @@
-//! Why the pixel under the pointer is as it is: asked when the pointer rests, answered by a thread, and shown until it
-//! moves on.
+//! The explanation of the pixel under the pointer: requested when the pointer rests, computed by a thread,
+//! and shown until the pointer moves.
 
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
@@ -12,36 +12,36 @@ use shadowfit_truth::{Class, PixelCamera};
 use super::Stage;
 use super::live::Key;
 
-/// How long the pointer must rest, in seconds.
+/// Least rest time of the pointer, in seconds.
 const REST: f32 = 0.25;
-/// How far a resting pointer may move, as a share of the picture.
+/// Greatest movement of a resting pointer, as a share of the picture.
 const SLACK: f32 = 0.001;
 
-/// How far an answer has come.
+/// Progress of an answer.
 #[derive(Debug)]
 enum Step {
-    /// A thread finds which texel is read.
+    /// A thread finds the texel that is read.
     Finding(WhyInput, Receiver<Option<Why>>),
-    /// The GPU reads the pixel and the texels around that one.
+    /// The GPU reads the pixel, and the texels around that texel.
     Reading(WhyInput, PixelRead, [u32; 2]),
     /// A thread finds the reason.
     Answering(Receiver<Option<Why>>),
     Done,
 }
 
-/// The pixel under the resting pointer, and the state of the answer about it.
+/// The pixel under the resting pointer, and the progress of its answer.
 #[derive(Debug, Default)]
 pub(super) struct PixelQuestion {
-    /// Place of the pointer, content of the picture, and since when both have been the same, by the stage's clock in
-    /// seconds.
+    /// Position of the pointer, content of the picture, and the time since which both have not changed, by
+    /// the stage's clock in seconds.
     at: Option<([f32; 2], Key, f32)>,
     step: Option<Step>,
     why: Option<Why>,
 }
 
 impl Stage {
-    /// Asks about the pixel on which the pointer rests while the picture stands still: shares of its width and height
-    /// from the top left. Call it once a frame.
+    /// Requests the explanation of the pixel under the resting pointer while the picture does not change.
+    /// `hover` is in shares of its width and height from the top left. Call it once a frame.
     pub fn ask_why(&mut self, hover: Option<[f32; 2]>, size: [u32; 2]) {
         let asked = hover.and_then(|hover| Some((hover, self.shown_at(hover, size)?)));
         let same = |old: [f32; 2], new: [f32; 2]| (0..2).all(|axis| (old[axis] - new[axis]).abs() <= SLACK);
@@ -66,7 +66,7 @@ impl Stage {
         };
     }
 
-    /// The answer, once it has arrived.
+    /// Returns the answer, once it has arrived.
     pub fn why(&self) -> Option<WhyCard<'_>> {
         let why = self.why.why.as_ref()?;
         Some(WhyCard {
@@ -82,7 +82,7 @@ impl Stage {
         })
     }
 
-    /// The content of the picture at a point, in views of the camera.
+    /// Returns the content of the picture at a point, in views of the camera.
     fn shown_at(&self, at: [f32; 2], size: [u32; 2]) -> Option<Key> {
         let in_other = self.is_comparing() && at[0] > self.split;
         let (side, technique) = self.side_at(in_other).filter(|_| self.settings.view.mode.shows_camera())?;
@@ -129,7 +129,7 @@ impl Stage {
                     question.stored = stored(&facts.depths, texel);
                     Step::Answering(think(question))
                 }
-                // The device is lost, which is reported where pictures are presented.
+                // The device is lost, which is reported when pictures are presented.
                 Some(Err(_)) => Step::Done,
             },
             Step::Answering(answer) => match answer.try_recv() {
@@ -144,7 +144,7 @@ impl Stage {
         }
     }
 
-    /// Has the GPU read the pixel, and the map around the texel that it reads.
+    /// Makes the GPU read the pixel, and the map around the texel that it reads.
     fn read_pixel(&mut self, question: WhyInput, texel: Option<(usize, [f32; 2])>) -> Step {
         let Some((map, texel)) = texel else { return Step::Done };
         let texel = texel.map(|at| at.max(0.0) as u32);
@@ -160,7 +160,7 @@ impl Stage {
         }
     }
 
-    /// World position of the surface at a point of the picture, in metres.
+    /// Returns the world position of the surface at a point of the picture, in metres.
     pub fn pick(&self, at: [f32; 2], size: [u32; 2]) -> Option<DVec3> {
         let rays = self.scene.ready_rays()?;
         let camera = self.scene.camera_for_rays(self.camera_of(size));
@@ -171,18 +171,18 @@ impl Stage {
     }
 }
 
-/// The nine depths around a texel.
+/// Returns the nine depths around a texel.
 fn stored(depths: &[f32], texel: [u32; 2]) -> Option<StoredTexels> {
     let depths: [f32; 9] = depths.try_into().ok()?;
     let row = |row: usize| [depths[row * 3], depths[row * 3 + 1], depths[row * 3 + 2]];
     Some(StoredTexels { texel, depths: [row(0), row(1), row(2)] })
 }
 
-/// Answers on a thread.
+/// Computes the answer on a thread.
 fn think(question: WhyInput) -> Receiver<Option<Why>> {
     let (sender, answer) = channel();
     let work = move || {
-        // Nobody waits once the pointer has moved on.
+        // The receiver is gone once the pointer has moved.
         let _ = sender.send(why(&question));
     };
     // Without a thread the channel is closed, and there is no answer.

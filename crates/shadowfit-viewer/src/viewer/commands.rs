@@ -1,4 +1,4 @@
-//! Runs each command.
+//! Running of commands.
 
 use std::sync::mpsc::channel;
 
@@ -19,8 +19,8 @@ use crate::keep::undo::State;
 use crate::scene_source::{OPTION_PREFIX, SceneSource};
 use crate::stage::compared_with;
 
-/// How far the camera flies toward a point, as a share of the distance. The height of an orthographic picture shrinks by the
-/// same share.
+/// Share of the distance to a point that the camera flies. The height of an orthographic picture shrinks by
+/// the same share.
 const FOCUS: f64 = 0.6;
 
 impl Viewer {
@@ -51,7 +51,7 @@ impl Viewer {
             // Everything else needs a scene.
             _ if !self.has_scene => {
                 if self.line.is_some() {
-                    self.tell(Err(anyhow!("there is no scene yet; let the script begin with `await loaded`")));
+                    self.tell(Err(anyhow!("no scene has been loaded yet; begin the script with `await loaded`")));
                 }
             }
             command => self.run_on_scene(command),
@@ -92,7 +92,7 @@ impl Viewer {
         None
     }
 
-    /// Copies the report of the device's check.
+    /// Copies the report of the device check.
     fn copy_check(&mut self) {
         if let Some(report) = self.device_check.report() {
             self.interface.context.copy_text(report.text());
@@ -121,7 +121,7 @@ impl Viewer {
             Command::ShowArtefact(_) | Command::Compare(Toggle::On | Toggle::Switch) | Command::StartTune
         );
         if is_of_techniques && self.stage.draws_sample() {
-            return self.say("This is for modern maps: choose them as the sample's shadows first");
+            return self.say("This needs modern maps: choose them as the sample's shadows first");
         }
         match command {
             Command::ShowArtefact(artefact) => self.search(artefact),
@@ -209,7 +209,7 @@ impl Viewer {
         let search = self.stage.search(artefact);
         let (sender, receiver) = channel();
         let work = move || {
-            // The receiver is gone if another artefact was asked for.
+            // The receiver is gone after another artefact was requested.
             let _ = sender.send(search.run());
         };
         if in_background("search", work).is_ok() {
@@ -257,7 +257,7 @@ impl Viewer {
         }
     }
 
-    /// Restores a state, and the place to which the camera was flown.
+    /// Restores a state, and the last position of a flown camera.
     fn go_to(&mut self, now: &State, state: State) {
         let flown = self.history.flown_again(now, &state);
         self.restore_state(state);
@@ -275,8 +275,8 @@ impl Viewer {
         self.stage.restore_artefact(state.artefact);
     }
 
-    /// Flies toward the surface at a point of the picture, in views of the camera. An orthographic picture keeps its direction,
-    /// moves its middle to the point and gets smaller. The roll stays.
+    /// Flies toward the surface at a point of the picture, in views of the camera. An orthographic camera
+    /// keeps its direction, moves until the point is in the middle, and reduces its height. The roll stays.
     fn focus(&mut self, at: [f32; 2]) {
         if !self.stage.settings.view.mode.shows_camera() {
             return;
@@ -298,7 +298,7 @@ impl Viewer {
         let bookmark = Bookmark::new(key, &self.source, self.stage.camera);
         self.saved.bookmarks.retain(|other| !other.is_of(key, &self.source));
         self.saved.bookmarks.push(bookmark);
-        self.say(format!("Bookmark {key}: {} comes back here", digit_keys(&Command::GoToBookmark(1), key)));
+        self.say(format!("Bookmark {key}: {} returns to this view", digit_keys(&Command::GoToBookmark(1), key)));
     }
 
     fn go_to_bookmark(&mut self, key: u8) -> Result<String> {
@@ -322,12 +322,12 @@ impl Viewer {
         });
     }
 
-    /// Uses the technique that the search found, on the side where it started.
+    /// Applies the result of the search, on the side where it started.
     fn apply_tune(&mut self) {
         let is_of_other = self.tuning.is_of_other;
         let side = match self.stage.settings_and_other() {
             (_, None) if is_of_other => {
-                return self.say("Technique B, which this was found for, is not shown any more");
+                return self.say("Technique B, for which this was found, is no longer shown");
             }
             (_, Some(other)) if is_of_other => other,
             (settings, _) => &mut settings.technique,
@@ -347,7 +347,7 @@ impl Viewer {
             params::set_technique_from_str(self.edited(), id, value)?;
         } else {
             params::set_from_str(&mut self.stage.settings, id, value)?;
-            // The next action may change the lens of the camera that this one chooses.
+            // The next action may change the lens of the camera that this action chooses.
             self.stage.follow_file();
         }
         Ok(format!("{id} = {value}"))
@@ -362,13 +362,13 @@ impl Viewer {
         told
     }
 
-    /// The technique that the panel edits.
+    /// Returns the technique that the panel edits.
     pub(super) fn edited_technique(&self) -> Technique {
         let other = self.stage.other_technique().filter(|_| self.interface.edits_other);
         other.unwrap_or(self.stage.settings.technique)
     }
 
-    /// The technique that the panel edits, to be changed.
+    /// Returns the technique that the panel edits, for changes.
     pub(super) fn edited(&mut self) -> &mut Technique {
         let edits_other = self.interface.edits_other;
         let (settings, other) = self.stage.settings_and_other();
@@ -378,7 +378,7 @@ impl Viewer {
         }
     }
 
-    /// The command line that starts with this scene and these settings.
+    /// Returns the command line that starts with this scene and these settings.
     pub(super) fn command_line(&self) -> String {
         command_line(
             &self.source,
@@ -393,10 +393,10 @@ impl Viewer {
         let name = name.trim();
         let is_built_in = NamedTechnique::preset(name).is_some();
         let named = NamedTechnique { name: name.to_owned(), ..self.edited_technique().into() };
-        // A technique that cannot be written could not be read back.
+        // A technique that cannot be written cannot be read back.
         named.to_toml().context("this technique cannot be saved")?;
         if name.is_empty() || is_built_in {
-            return Err(anyhow!("a preset needs a name of its own, and {name:?} cannot be one"));
+            return Err(anyhow!("a preset needs its own name; {name:?} is empty or the name of a built-in preset"));
         }
         self.saved.presets.retain(|preset| preset.name != name);
         self.presets.retain(|preset| preset.name != name);
@@ -406,12 +406,12 @@ impl Viewer {
     }
 }
 
-/// The keys of a command that has one for each digit, which is listed for 1.
+/// Returns the keys for a digit of a command that is listed for 1.
 fn digit_keys(command: &Command, digit: u8) -> String {
     keys_of(command).replace("1 … 9", &digit.to_string())
 }
 
-/// A saved technique as the panel lists it.
+/// Converts a saved technique for the panel.
 pub(super) fn preset(named: &NamedTechnique) -> UserPreset {
     UserPreset { name: named.name.clone(), technique: named.technique }
 }

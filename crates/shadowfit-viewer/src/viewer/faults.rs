@@ -1,4 +1,4 @@
-//! Faults from below: a device that is lost, or has no memory left.
+//! Device faults: a device that is lost, or has no memory left.
 
 use std::fmt::Write as _;
 
@@ -13,41 +13,41 @@ use crate::background::loading::Loading;
 use crate::platform::output;
 use crate::scene_source::SceneSource;
 
-/// A device that is lost sooner than this after it was made anew would be lost again and again, in seconds.
+/// Least life of a replaced device, in seconds. If it is lost sooner, further devices would be lost, too.
 const CALM: f32 = 60.0;
 
-/// When a device was last made anew.
+/// Time when the device was last replaced.
 #[derive(Debug, Default)]
 pub(crate) struct Renewals(Option<Instant>);
 
 impl Renewals {
-    /// Notes that a device was lost.
+    /// Records that a device was lost.
     ///
     /// # Errors
     ///
-    /// If the one before was lost only just now.
+    /// If the previous device was lost only shortly before.
     pub(crate) fn next(&mut self, why: &str) -> Result<()> {
         let last = self.0.replace(Instant::now());
         if let Some(since) = last.map(|last| last.elapsed().as_secs_f32()).filter(|since| *since < CALM) {
             bail!(
-                "the graphics device was lost again, {since:.1} s after it was made anew ({why}). The settings are kept: \
-                 start the viewer again, or with `--software`, which needs no graphics card"
+                "the graphics device was lost again, {since:.1} s after it was replaced ({why}). The settings are \
+                 saved: start the viewer again, or with `--software`, which needs no graphics card"
             );
         }
-        output::tell(format_args!("the graphics device was lost ({why}); it is made anew"));
+        output::tell(format_args!("the graphics device was lost ({why}); opening a new one"));
         Ok(())
     }
 }
 
 impl Viewer {
-    /// Goes on with another device, after the first one was lost, and says so: scene, settings and camera stay, but for maps
-    /// that it had no memory for.
+    /// Continues with another device after the first one was lost, and shows a message. Scene, settings and
+    /// camera stay, except for maps that caused the device to run out of memory.
     ///
     /// # Errors
     ///
-    /// If the device cannot draw what the first one drew.
+    /// If the new device cannot draw the same as the first one.
     pub(crate) fn move_to(&mut self, gpu: Gpu, format: wgpu::TextureFormat, why: &str) -> Result<()> {
-        self.stage.move_to(gpu).context("the graphics device was lost, and a new one cannot take its place")?;
+        self.stage.move_to(gpu).context("the graphics device was lost, and a new one cannot replace it")?;
         self.restore_lost();
         self.interface.move_to(&self.stage, format);
         for saving in std::mem::take(&mut self.saving) {
@@ -61,19 +61,22 @@ impl Viewer {
         if let Some(Loading { source, line, .. }) = self.loading.take() {
             self.loading = Some(Loading::start(source, line, self.stage.gpu(), self.stage.material_layout()));
         }
-        let mut text =
-            "The graphics device was lost, and made anew: scene, settings and camera are as they were".to_owned();
+        let mut text = "The graphics device was lost and replaced: scene, settings and camera are unchanged".to_owned();
         if why.to_ascii_lowercase().contains("memory") {
             let resolution = &mut self.stage.settings.technique.fit.resolution;
             *resolution = (*resolution / 2).max(UVec2::splat(*RESOLUTIONS.start()));
             let [width, height] = resolution.to_array();
-            let _ = write!(text, ", but for the maps, which have {width} × {height} texels now: it had no memory left");
+            let _ = write!(
+                text,
+                ", except for the maps, which now have {width} × {height} texels: the old device had \
+                   no memory left"
+            );
         }
         self.say(text);
         Ok(())
     }
 
-    /// Brings back what a frame that was cut short had in hand: the second technique, or the sample.
+    /// Restores state that an interrupted frame had taken out: the second technique, or the sample.
     fn restore_lost(&mut self) {
         let Some(state) = self.last_state.take().filter(|_| self.has_scene) else { return };
         if let (SceneSource::Sample { sample, variant }, None) = (&self.source, self.stage.sample()) {
@@ -86,7 +89,7 @@ impl Viewer {
         }
     }
 
-    /// Tells of faults of the device that nothing else has reported, each one once.
+    /// Reports device faults that were not reported elsewhere, each one once.
     pub(crate) fn tell_faults(&mut self) {
         for fault in self.stage.gpu().take_faults() {
             if !self.told_faults.insert(fault.to_string()) {

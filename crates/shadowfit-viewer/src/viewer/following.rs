@@ -1,4 +1,4 @@
-//! Links: what the viewer shows as a [`Link`], and back.
+//! Links: the state of the viewer as a [`Link`], and back.
 
 use shadowfit_classics::SampleValues;
 use shadowfit_params::tool::Settings;
@@ -10,12 +10,12 @@ use crate::keep::undo::History;
 use crate::stage::Shown;
 
 impl Viewer {
-    /// The link that brings back what is on show: scene, settings, camera, comparison and artefact.
+    /// Returns a link to the current state: scene, settings, camera, comparison and artefact.
     pub(crate) fn link(&self) -> Link {
         let stage = &self.stage;
         let now = &stage.settings;
         let other = stage.other_technique().map(|other| (differences(&now.with_technique(other), now), stage.split));
-        // A scene opens at this time, if not in the pose of its animation.
+        // A scene opens at time 0, so other times of a paused animation are written.
         let stands = !now.view.play && stage.seconds() != 0.0;
         let sample = stage.sample().map(|show| changed(show).collect::<Vec<_>>());
         Link {
@@ -31,8 +31,8 @@ impl Viewer {
         }
     }
 
-    /// Returns the scene's own settings with the lens of the file's camera that is followed: whoever reads a link or a command
-    /// line takes that lens first.
+    /// Returns the scene's own settings with the lens of the followed camera of the file. Reading a link or a
+    /// command line applies that lens first.
     pub(super) fn own_with_lens(&self) -> Settings {
         let (mut own, followed) = (self.own_settings, self.stage.settings.camera.file);
         if let Some(number) = followed.filter(|_| followed != own.camera.file) {
@@ -42,7 +42,7 @@ impl Viewer {
         own
     }
 
-    /// The artefact on show, unless it was not found.
+    /// Returns the shown artefact, unless no view of it was found.
     fn linked_artefact(&self) -> Option<LinkedArtefact> {
         let shown = self.stage.shown().filter(|_| !self.stage.is_missed())?;
         let now = &self.stage.settings;
@@ -57,8 +57,8 @@ impl Viewer {
         })
     }
 
-    /// Opens the scene of a link, and brings back what it says once that is there. A file cannot be opened by itself: the
-    /// panel asks for it.
+    /// Opens the scene of a link, and applies the link once the scene is loaded. A file cannot be opened
+    /// automatically, so the panel asks the user for it.
     pub(crate) fn follow(&mut self, link: Link) {
         if self.has_scene && self.loading.is_none() && link.is_of(&self.source) {
             return self.bring_back(&link);
@@ -69,14 +69,14 @@ impl Viewer {
         self.link = Some(link);
     }
 
-    /// Brings back what the link says that waits for the scene that has just been opened.
+    /// Applies a link that has waited for the scene that was just opened.
     pub(super) fn follow_on(&mut self) {
         if let Some(link) = self.link.take_if(|link| link.is_of(&self.source)) {
             self.bring_back(&link);
         }
     }
 
-    /// Brings back everything that a link of the scene on show says.
+    /// Applies a link to the current scene.
     fn bring_back(&mut self, link: &Link) {
         let mut notes = link.notes.clone();
         let mut settings = self.own_settings;
@@ -118,19 +118,20 @@ impl Viewer {
         }
     }
 
-    /// Copies the link of what is on show: of the page in which the viewer runs, or the fragment alone.
+    /// Copies a link to the current state: with the address of the page in which the viewer runs, or only the
+    /// fragment.
     pub(super) fn copy_link(&self) -> String {
         let page = self.page.as_deref().unwrap_or_default();
         self.interface.context.copy_text(format!("{page}{}", self.link().to_fragment()));
         if self.page.is_some() {
-            "Copied a link to what is on show".to_owned()
+            "Copied a link to this scene and its settings".to_owned()
         } else {
-            "Copied what is on show, for `viewer --link`".to_owned()
+            "Copied a link for `viewer --link`".to_owned()
         }
     }
 }
 
-/// Settings with some parameters changed.
+/// Returns settings with some parameters changed.
 fn with(pairs: &crate::keep::link::Pairs, settings: &Settings) -> Settings {
     let mut changed = *settings;
     apply(pairs, &mut changed);

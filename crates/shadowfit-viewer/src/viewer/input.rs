@@ -1,24 +1,24 @@
-//! The keys that are held and the sticks that are pushed, as the camera's input.
+//! Held keys and gamepad sticks as input of the camera.
 
 use egui::Key;
 use glam::{Vec2, Vec3};
 use shadowfit_egui::Chord;
 use shadowfit_render::FlyInput;
 
-/// Keys and sticks that are held.
+/// Held keys and gamepad sticks.
 #[derive(Debug, Default)]
 pub(crate) struct Input {
     held: Vec<Chord>,
     /// Whether Shift is held.
     pub(crate) fast: bool,
-    /// Movement of a mouse that looks around without a button, in pixels, since the frame before.
+    /// Mouse movement that looks around without a button, in pixels, since the previous frame.
     pub(crate) look: Vec2,
     /// Sticks: movement and turn, each -1..=1, added to the keys.
     pub(crate) sticks: (Vec3, Vec2),
 }
 
 impl Input {
-    /// Notes a key that was pressed or released; returns whether it was pressed and not held already.
+    /// Records a key press or release. Returns whether it is a press of a key that was not held.
     pub(crate) fn key(&mut self, chord: Chord, pressed: bool) -> bool {
         let is_held = self.held.iter().any(|held| held.key == chord.key);
         if pressed && !is_held {
@@ -29,12 +29,13 @@ impl Input {
         pressed && !is_held
     }
 
-    /// Forgets everything held: the window lost its focus, and releases will not arrive.
+    /// Releases everything: the window lost its focus, so that key releases will not arrive.
     pub(crate) fn release_all(&mut self) {
         *self = Self::default();
     }
 
-    /// The input of the camera; the caller adds drags and the wheel. Keys that are held with Control or Alt do not fly.
+    /// Returns the input of the camera; the caller adds drags and the wheel. Keys held with Control or Alt do
+    /// not fly.
     pub(crate) fn fly(&self) -> FlyInput {
         let held = |key| f32::from(u8::from(self.held.iter().any(|held| held.key == key && !held.ctrl && !held.alt)));
         let axis = |positive, negative| held(positive) - held(negative);

@@ -23,16 +23,17 @@ use crate::play::script;
 use crate::scene_source::SceneSource;
 
 impl Viewer {
-    /// Starts loading a scene; the old one is shown until then.
+    /// Starts loading a scene. The old one is shown until then.
     pub(super) fn open(&mut self, source: SceneSource) {
-        // Another scene than that of a link which is being followed ends that, unless the link waits for a person.
+        // Opening another scene cancels a link that is being followed, unless the link waits for the user's
+        // file.
         self.link.take_if(|link| link.scene.request().is_none());
         let source = self.of_link(source);
         let line = self.line.clone();
         self.loading = Some(Loading::start(source, line, self.stage.gpu(), self.stage.material_layout()));
     }
 
-    /// The source, with the scene of the file that a link of that file asks for.
+    /// Returns the source, with the scene index of a link to the same file.
     fn of_link(&self, source: SceneSource) -> SceneSource {
         match self.link.as_ref().map(|link| &link.scene) {
             Some(LinkedScene::File { name, index: Some(index) }) if *name == source.label() => {
@@ -70,13 +71,14 @@ impl Viewer {
         Ok(format!("Playing {}", path.display()))
     }
 
-    /// Takes the settings that a screenshot was made with: the technique for the side that the panel edits. The camera stays,
-    /// with its lens. In a picture of another scene, the sun of that scene's file counts as one by hand.
+    /// Applies the settings in a screenshot, with the technique for the side that the panel edits. The camera
+    /// and its lens stay. In a picture of another scene, the number of the file's sun is ignored.
     fn open_picture(&mut self, path: &Path) -> Result<String> {
-        let text = settings_of_png(path)?.ok_or_else(|| anyhow!("it has no settings of the viewer"))?;
+        let text = settings_of_png(path)?.ok_or_else(|| anyhow!("it contains no settings of the viewer"))?;
         let mut table: toml::Table = toml::from_str(&text)?;
         let is_of_scene = table.get("scene").and_then(toml::Value::as_str) == Some(&self.source.text());
-        let settings = table.get_mut("settings").and_then(toml::Value::as_table_mut).context("it has no settings")?;
+        let settings =
+            table.get_mut("settings").and_then(toml::Value::as_table_mut).context("it contains no settings")?;
         settings.remove(Group::Camera.id());
         if let Some(light) = settings.get_mut(Group::Light.id()).and_then(toml::Value::as_table_mut)
             && !is_of_scene
@@ -90,10 +92,11 @@ impl Viewer {
         Ok(format!("Settings of {}", path.display()))
     }
 
-    /// Shows the scene that has been loaded. After an error the old one stays. At the start there is none: instead of the
-    /// scene of the last time the built-in one is opened, and for a scene of the arguments the viewer ends.
+    /// Shows the scene that has been loaded. On an error the old one stays. At the start there is no old
+    /// scene: if the last scene fails, the built-in one is opened; if a scene in the arguments fails, the
+    /// viewer ends.
     pub(super) fn take_scene(&mut self) {
-        // What comes of a lost device is loaded anew for the next one.
+        // A result for a lost device is discarded, and the scene is loaded again for the next device.
         let Some(result) = self.loading.as_ref().and_then(Loading::take) else { return };
         if self.stage.gpu().lost().is_some() {
             return;
@@ -103,7 +106,7 @@ impl Viewer {
         match result {
             Ok(prepared) => self.show(loading.source, prepared),
             Err(error) if self.start.is_pending && is_of_last_time => {
-                let message = format!("The scene of the last time cannot be opened: {error:#}");
+                let message = format!("The last scene cannot be opened: {error:#}");
                 output::tell(&message);
                 self.say(message);
                 self.open(SceneSource::default());
@@ -126,7 +129,7 @@ impl Viewer {
             self.saved.remember(path);
         }
         self.source = source;
-        // Background work and undo belong to the scene before.
+        // Background work and undo belong to the previous scene.
         self.searching = None;
         self.tuning.abandon();
         self.history = History::default();
@@ -153,9 +156,9 @@ impl Viewer {
         self.follow_on();
     }
 
-    /// Sets up the scene of the start. If that is impossible, the viewer ends.
+    /// Sets up the first scene. If that fails, the viewer ends.
     fn show_first(&mut self) {
-        // Messages of the meantime are shown from now on.
+        // Messages during loading are shown from now on.
         self.message.iter_mut().for_each(|message| message.since = self.clock);
         let scene = self.stage.scene();
         let is_there = check_animation(self.start.arguments.animation, scene.animations.len(), &scene.name);
@@ -169,7 +172,8 @@ impl Viewer {
         }
     }
 
-    /// Goes on with the techniques and the view of the scene before, with the lengths of this scene.
+    /// Keeps the techniques and the view of the previous scene, with the shadow distance and caster extension
+    /// of this one.
     fn keep_technique(&mut self, kept: &Settings, comparing: Option<Technique>) {
         let Settings { technique, view, .. } = of_scene(kept, &self.own_settings);
         (self.stage.settings.technique, self.stage.settings.view) = (technique, view);
@@ -177,7 +181,7 @@ impl Viewer {
     }
 }
 
-/// The technique of a file; one without a name gets the file's.
+/// Reads the technique of a file. Without a name, it gets the file's name.
 fn technique(path: &Path) -> Result<NamedTechnique> {
     Ok(NamedTechnique::from_toml(std::str::from_utf8(&platform::read(path)?)?)?.or_named_after(path))
 }

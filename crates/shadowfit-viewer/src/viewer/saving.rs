@@ -1,5 +1,5 @@
-//! Pictures are saved once their pixels have come back from the GPU: at once, or in browsers, where nothing can wait, some
-//! frames later.
+//! Saving of pictures. A picture is saved once its pixels have arrived from the GPU: at once, or in browsers,
+//! which cannot wait, some frames later.
 
 use std::path::{Path, PathBuf};
 
@@ -15,17 +15,17 @@ use crate::platform::{IS_PAGE, save_file, temporary_folder};
 /// The file of a picture.
 pub(super) struct Destination {
     pub(super) path: PathBuf,
-    /// The line of the script that asked for it.
+    /// The line of the script that requested it.
     pub(super) line: Option<String>,
 }
 
-/// A picture whose pixels are on their way.
+/// A picture that waits for its pixels.
 pub(super) struct Saving {
     pixels: ReadBack,
     size: [u32; 2],
     is_blue_first: bool,
     pub(super) destination: Destination,
-    /// The settings that it was made with.
+    /// The settings of the picture.
     settings: String,
 }
 
@@ -58,7 +58,7 @@ impl Viewer {
         Ok(format!("Saved {}", path.display()))
     }
 
-    /// The text that a saved picture carries: the scene and all settings, as [`Self::open_picture`] reads them.
+    /// Returns the text in a saved picture: the scene and all settings, as [`Self::open_picture`] reads them.
     pub(super) fn text_of_settings(&self) -> String {
         let scene = toml::Value::from(self.source.text());
         let line = toml::Value::from(self.command_line());
@@ -66,7 +66,7 @@ impl Viewer {
         format!("scene = {scene}\ncommand = {line}\n\n{settings}")
     }
 
-    /// Has the next frame of the whole window saved as a picture.
+    /// Requests a picture of the next frame of the whole window.
     pub(super) fn ask_for_window(&mut self, path: PathBuf) {
         let path = self.start.place(path);
         self.shots.push(Destination { path, line: self.line.clone() });
@@ -79,7 +79,7 @@ impl Viewer {
         self.save_later(destination, whole.read_back(self.stage.gpu()), size, whole.is_blue_first());
     }
 
-    /// Saves pixels as a picture with the present settings.
+    /// Saves pixels as a picture with the current settings.
     pub(super) fn save_later(
         &mut self,
         destination: Destination,
@@ -92,7 +92,7 @@ impl Viewer {
         self.take_saved();
     }
 
-    /// Saves the pictures whose pixels have come.
+    /// Saves the pictures whose pixels have arrived.
     pub(super) fn take_saved(&mut self) {
         for saving in std::mem::take(&mut self.saving) {
             let gpu = self.stage.gpu();
@@ -108,7 +108,7 @@ impl Viewer {
                 }
                 write_png(&path, size, &pixels, Some(&settings))
             });
-            // A script's next picture of the window would show that its last one was saved.
+            // No message for scripts, since it would be visible in the script's next picture of the window.
             if saved.is_ok() && line.is_some() {
                 continue;
             }

@@ -1,4 +1,4 @@
-//! How the viewer starts: from arguments and the saved state.
+//! The start of the viewer from arguments and the saved state.
 
 use std::path::{Path, PathBuf};
 
@@ -19,18 +19,18 @@ use crate::platform::output;
 use crate::play::script::Line;
 use crate::scene_source::SceneSource;
 
-/// The start that the arguments ask for.
+/// The start as requested by the arguments.
 #[derive(Clone, Debug)]
 pub(crate) struct Start {
     pub(crate) arguments: Arguments,
-    /// The scene that they name, if any.
+    /// The scene in the arguments, if any.
     pub(crate) source: Option<SceneSource>,
     pub(crate) script: Vec<Line>,
     /// The link to follow.
     link: Option<Link>,
-    /// Scene, settings and camera of the last time, until the scene of the start is there.
+    /// Saved scene, settings and camera, until the first scene is loaded.
     pub(super) kept: Option<(SceneSource, Settings, Option<FlyCamera>)>,
-    /// Whether the scene of the start is still being loaded.
+    /// Whether the first scene is still loading.
     pub(super) is_pending: bool,
     /// Folder for files with a relative path; the working folder if `None`.
     folder: Option<PathBuf>,
@@ -41,29 +41,29 @@ impl Start {
     ///
     /// # Errors
     ///
-    /// If they name a script that cannot be read, an unknown parameter or technique, or a scene index for a built-in
-    /// scene.
+    /// If the script cannot be read, a parameter or technique is unknown, or a scene index is given for a
+    /// built-in scene.
     pub(crate) fn new(arguments: &Arguments) -> anyhow::Result<Self> {
         let source = arguments.source()?;
-        // Wrong arguments are reported at once, except for what depends on the settings of the last time.
+        // Invalid arguments are reported at once, except for values that depend on the saved settings.
         arguments.apply_what_is_there(&mut Settings::default())?;
         let script = arguments.lines()?;
         let link = arguments.link.as_deref().map(Link::parse).transpose().context("--link")?;
         Ok(Self { arguments: arguments.clone(), source, script, link, kept: None, is_pending: true, folder: None })
     }
 
-    /// Puts the files that a script saves into a folder.
+    /// Makes scripts save their files into a folder.
     #[must_use]
     pub(crate) fn saving_into(self, folder: &Path) -> Self {
         Self { folder: Some(folder.to_owned()), ..self }
     }
 
-    /// Folder for files with a relative path; the working folder if `None`.
+    /// Returns the folder for files with a relative path; the working folder if `None`.
     pub(super) fn folder(&self) -> Option<&Path> {
         self.folder.as_deref()
     }
 
-    /// Where a file is saved.
+    /// Returns the path at which a file is saved.
     pub(super) fn place(&self, path: PathBuf) -> PathBuf {
         self.folder.as_ref().map_or(path.clone(), |folder| folder.join(path))
     }
@@ -74,14 +74,14 @@ impl Viewer {
     pub(super) fn restore(&mut self) {
         let (saved, message) = self.store.as_mut().map_or((None, None), Store::load);
         if let Some(message) = message {
-            // Whoever starts it in a terminal sees it there, too.
+            // For users who started the viewer in a terminal.
             output::tell(&message);
             self.say(message);
         }
         let saved = saved.unwrap_or_default();
         let link = self.start.link.take();
         let source = self.start.source.clone().unwrap_or_else(|| saved.scene.clone());
-        // A link says all that it wants otherwise than the scene has it.
+        // A link contains all differences from the scene's initial state.
         if self.store.is_some() && link.is_none() {
             self.start.kept = Some((saved.scene.clone(), saved.settings, saved.camera));
         }
@@ -92,12 +92,12 @@ impl Viewer {
             self.follow(link);
         }
         if self.loading.is_none() {
-            // No link, or one of a file that is asked for, and may be the one of the arguments.
+            // No link, or a link to a file that the user must open, which may be the scene in the arguments.
             self.open(source);
         }
     }
 
-    /// Sets up the scene of the start: its own settings, then those of the last time, then the arguments.
+    /// Sets up the first scene: its own settings, then the saved settings, then the arguments.
     pub(super) fn set_up(&mut self) -> anyhow::Result<Option<NamedTechnique>> {
         self.start.is_pending = false;
         let arguments = self.start.arguments.clone();
@@ -112,13 +112,12 @@ impl Viewer {
             self.stage.set_home();
             return Ok(technique);
         };
-        // The state that a reset goes back to: without saved settings, and with the arguments that make sense without
-        // them.
+        // The state for a reset: without saved settings, and with the arguments that are valid without them.
         arguments.apply_what_is_there(&mut home)?;
         self.stage.restore_settings(&home);
         self.stage.set_home();
         let mut settings = if source == self.source { with_own_near(kept, &home) } else { of_scene(&kept, &home) };
-        // Arguments win over saved settings.
+        // Arguments override saved settings.
         self.stage.choose_camera(arguments.settings(), &mut settings);
         let technique = arguments.apply(&mut settings)?;
         self.stage.restore_settings(&settings);
@@ -134,12 +133,11 @@ impl Viewer {
         Ok(technique)
     }
 
-    /// Sets the options of the sample of the start: first as they were the last time if it was shown then, then the
-    /// arguments.
+    /// Sets the options of the first sample: the saved ones, if it was the last scene, then the arguments.
     fn set_up_sample(&mut self, arguments: &Arguments) -> anyhow::Result<()> {
         let is_of_it = self.saved.scene == self.source;
         for (option, text) in self.saved.sample.clone().iter().filter(|_| is_of_it) {
-            // An option that this version does not know is left out.
+            // An option that this version does not know is ignored.
             let _ = self.stage.set_sample_text(option, text);
         }
         for (option, text) in arguments.sample_options() {
@@ -148,7 +146,7 @@ impl Viewer {
         Ok(())
     }
 
-    /// Whether there is a saved state.
+    /// Returns whether there is a saved state.
     fn saved_is_there(&self) -> bool {
         self.saved != Saved { theme: self.saved.theme, ..Saved::default() }
     }
@@ -157,7 +155,7 @@ impl Viewer {
     pub(crate) fn save(&mut self) {
         self.saved_at = self.clock;
         let Some(store) = &mut self.store else { return };
-        // A start that failed has not shown anything worth keeping.
+        // After a failed start there is nothing to save.
         if !self.has_scene || self.start.is_pending || self.failure.is_some() {
             return;
         }
@@ -172,14 +170,15 @@ impl Viewer {
         self.saved.camera = self.stage.settings.camera.file.is_none().then_some(self.stage.camera);
         self.saved.other = self.stage.other_technique().map(|other| (other, self.stage.split));
         if let Some(message) = store.keep(&self.saved) {
-            // Whoever started it in a terminal sees it there, too: at the end the panel is gone.
+            // For users who started the viewer in a terminal, since the panel is gone at the end.
             output::tell(&message);
             self.say(message);
         }
     }
 }
 
-/// Settings of the same scene. A file holds no nearer near plane than the parameter's range has, but a tiny scene may.
+/// Returns settings of the same scene. A file stores no near plane below the parameter's range, but a tiny
+/// scene may have one.
 fn with_own_near(mut kept: Settings, home: &Settings) -> Settings {
     let least = shadowfit_params::parameter("camera.near").and_then(|near| match &near.kind {
         Kind::Number(range) => Some(range.min as f32),
@@ -191,7 +190,8 @@ fn with_own_near(mut kept: Settings, home: &Settings) -> Settings {
     kept
 }
 
-/// Settings of another scene, with the lengths and the light of this one.
+/// Returns settings of another scene, with the shadow distance, caster extension, camera and light of this
+/// one.
 pub(super) fn of_scene(kept: &Settings, home: &Settings) -> Settings {
     let technique = kept.technique.with_lengths_of(&home.technique);
     let view = ViewSettings { ray_offset: home.view.ray_offset, ..kept.view };

@@ -1,5 +1,5 @@
-//! The viewer frame by frame, on the tests' adapter and without a window: what is kept and what yields to what, undo,
-//! comparison, artefacts and tuning as commands ask for them.
+//! The viewer frame by frame, on the tests' adapter and without a window: saved state and what overrides it,
+//! undo, comparison, artefacts and tuning through commands.
 
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -42,7 +42,7 @@ fn viewer(arguments: &[&str], store: Option<&Path>) -> Viewer {
 }
 
 fn viewer_on(gpu: Gpu, arguments: &[&str], store: Option<&Path>) -> Viewer {
-    // Judging takes the software driver longer than drawing; the tests of it switch it on.
+    // Judging takes the software driver longer than drawing. Tests of judging turn it on.
     let resolution = format!("map.resolution={MAP_TEXELS}");
     let all = ["viewer", "--adapter", adapter_name(), "--no-play", "--set", &resolution, "--set", "view.judge=off"];
     let arguments = Arguments::parse_from(all.iter().chain(arguments));
@@ -51,7 +51,7 @@ fn viewer_on(gpu: Gpu, arguments: &[&str], store: Option<&Path>) -> Viewer {
     stage.read_depths();
     let store = store.map(|path| Store::new(StateFile::at(path.to_owned())));
     let viewer = Viewer::new(stage, wgpu::TextureFormat::Rgba8Unorm, start, store);
-    // With four points per pixel each way, the software driver draws a sixteenth of the pixels.
+    // With a quarter of a pixel per point, the software driver draws a sixteenth of the pixels.
     viewer.interface.context.set_pixels_per_point(0.25);
     viewer
 }
@@ -60,7 +60,7 @@ fn frame(viewer: &mut Viewer) {
     frame_with(viewer, Vec::new());
 }
 
-/// Lets seconds pass on the viewer's clock, in a few long frames.
+/// Advances the viewer's clock by some seconds, in a few long frames.
 fn pass(viewer: &mut Viewer, seconds: f32) {
     const FRAMES: u8 = 6;
     (0..FRAMES).for_each(|_| frame_of(viewer, Vec::new(), seconds / f32::from(FRAMES)));
@@ -76,14 +76,14 @@ fn frame_of(viewer: &mut Viewer, events: Vec<egui::Event>, seconds: f32) {
     let _ = viewer.frame(input, seconds);
 }
 
-/// Draws a frame while a thread is waited for, and leaves it most of the time: drawing takes the CPU away from it.
+/// Draws a frame while waiting for a thread, and then sleeps, since drawing takes CPU time from the thread.
 fn wait(viewer: &mut Viewer) {
     let start = Instant::now();
     frame(viewer);
     std::thread::sleep((3 * start.elapsed()).max(Duration::from_millis(40)));
 }
 
-/// Draws frames until what is under way has ended, whatever comes of it.
+/// Draws frames until running work has ended, even with an error.
 fn settle(viewer: &mut Viewer, is_over: impl Fn(&Viewer) -> bool) {
     for _ in 0..6000 {
         wait(viewer);
@@ -94,7 +94,7 @@ fn settle(viewer: &mut Viewer, is_over: impl Fn(&Viewer) -> bool) {
     panic!("it goes on and on");
 }
 
-/// Draws frames until something is so.
+/// Draws frames until a condition holds.
 fn until(viewer: &mut Viewer, what: &str, is_so: impl Fn(&Viewer) -> bool) {
     for _ in 0..6000 {
         wait(viewer);

@@ -1,17 +1,17 @@
-//! The page's events as those of egui.
+//! The page's events, converted to egui's events.
 
 use egui::{
     Event, Key, Modifiers, MouseWheelSource, MouseWheelUnit, PointerButton, Pos2, TouchDeviceId, TouchId, TouchPhase,
     vec2,
 };
 
-/// Bits of the keys that are held with another one.
+/// Bits of the modifier keys.
 const SHIFT: u32 = 1;
 const CTRL: u32 = 2;
 const ALT: u32 = 4;
 const META: u32 = 8;
 
-/// Events that wait for the next frame, and the state that they leave.
+/// Events for the next frame, and the resulting state.
 #[derive(Debug, Default)]
 pub(super) struct Events {
     pub(super) waiting: Vec<Event>,
@@ -21,7 +21,7 @@ pub(super) struct Events {
 }
 
 impl Events {
-    /// Notes the keys that are held with others.
+    /// Records the held modifier keys.
     pub(super) fn held(&mut self, bits: u32) {
         let is_on = |bit| bits & bit != 0;
         let modifiers = Modifiers {
@@ -37,13 +37,14 @@ impl Events {
         }
     }
 
-    /// The mouse moved to a point of the page, in points; `by` is how far it moved where it is locked.
+    /// Records a mouse movement to a point of the page, in points. `by` is the distance, also while the mouse
+    /// is locked.
     pub(super) fn moved(&mut self, at: Pos2, by: [f32; 2]) {
         self.waiting.push(Event::PointerMoved(at));
         self.waiting.push(Event::MouseMoved(by.into()));
     }
 
-    /// A button of the mouse, by the number that browsers give it.
+    /// Records a mouse button, by its number in browsers.
     pub(super) fn button(&mut self, pos: Pos2, number: u32, pressed: bool) {
         let button = match number {
             0 => PointerButton::Primary,
@@ -60,7 +61,7 @@ impl Events {
         self.waiting.push(Event::PointerGone);
     }
 
-    /// The wheel turned, in a unit by the number that browsers give it.
+    /// Records a turn of the wheel, in a unit by its number in browsers.
     pub(super) fn wheel(&mut self, [x, y]: [f32; 2], unit: u32) {
         let unit = match unit {
             0 => MouseWheelUnit::Point,
@@ -68,7 +69,7 @@ impl Events {
             _ => MouseWheelUnit::Page,
         };
         let (delta, modifiers) = (-vec2(x, y), self.modifiers);
-        // Browsers tell the two fingers of a touchpad as a wheel with Control.
+        // Browsers report a pinch on a touchpad as a wheel with Control.
         let event = if modifiers.ctrl && unit == MouseWheelUnit::Point {
             Event::Zoom((delta.y / 200.0).exp())
         } else {
@@ -77,7 +78,7 @@ impl Events {
         self.waiting.push(event);
     }
 
-    /// A finger: it moves the pointer, too, if it is the first.
+    /// Records a touch. The first finger also moves the pointer.
     pub(super) fn touch(&mut self, finger: u64, phase: &str, pos: Pos2) {
         let phase = match phase {
             "pointerdown" => TouchPhase::Start,
@@ -102,7 +103,7 @@ impl Events {
         }
     }
 
-    /// A key by its place and by what is printed on it, as browsers name both.
+    /// Records a key by its position and by its label, as browsers name both.
     pub(super) fn key(&mut self, code: &str, name: &str, pressed: bool, repeat: bool) {
         let physical_key = Key::from_name(code);
         if let Some(key) = Key::from_name(name).or(physical_key) {

@@ -1,4 +1,4 @@
-//! The figures of `--log-frames`: when the first scene was there, how long frames take, and how much memory is held.
+//! The figures of `--log-frames`: the time until the first scene, the times of frames, and the memory in use.
 
 use std::time::{Duration, Instant};
 
@@ -7,30 +7,30 @@ use shadowfit_render::Spent;
 use crate::platform::memory;
 use crate::platform::output;
 
-/// Frames between two lines, and the time that they are not farther apart than.
+/// Number of frames between two lines, and greatest time between them.
 const LOG_EVERY: (u64, Duration) = (60, Duration::from_secs(4));
-/// Least time of a frame that is told from others, in milliseconds.
+/// Least frame time that is distinguished, in milliseconds.
 const LEAST_MS: f64 = 0.01;
 /// Factor from one class of times to the next.
 const STEP: f64 = 1.02;
 /// Number of classes: up to some minutes.
 const CLASSES: usize = 900;
 
-/// What was seen of the frames since the start. It takes no more memory however many there are.
+/// Statistics of the frames since the start. Its memory does not grow with their number.
 pub(crate) struct FrameLog {
     start: Instant,
     last_line: Instant,
     frames: u64,
     is_ready: bool,
-    /// Longest time that a frame kept the window from answering since the last line, without waits for the GPU.
+    /// Longest time that a frame has blocked the window since the last line, without waits for the GPU.
     longest: Duration,
-    /// Longest time that a core worked for one since then.
+    /// Greatest CPU time of a frame since the last line.
     most_cpu: Duration,
-    /// Longest time of `longest` since the start.
+    /// Greatest value of `longest` since the start.
     longest_of_all: Duration,
-    /// Frames by the time that a core worked for them, without those in which a scene was loaded or something made.
+    /// Numbers of frames by CPU time, without frames that loaded a scene or made pipelines.
     classes: Vec<u64>,
-    /// Number of those, and the longest time that a core worked for one.
+    /// Number of those frames, and their greatest CPU time.
     loads: (u64, Duration),
 }
 
@@ -50,7 +50,8 @@ impl FrameLog {
         }
     }
 
-    /// Notes a frame, whose own time is without waits for the GPU. `ready` is the window's title once there is a scene.
+    /// Records a frame. Its own time excludes waits for the GPU. `ready` is the window's title once there is
+    /// a scene.
     pub(crate) fn frame(&mut self, own: Spent, frame_ms: f32, is_loading: bool, ready: Option<String>) {
         self.frames += 1;
         self.longest = self.longest.max(own.wall);
@@ -91,7 +92,7 @@ impl FrameLog {
         ));
     }
 
-    /// The time that a share of the frames stays below, in milliseconds.
+    /// Returns the upper limit of the time of a share of the frames, in milliseconds.
     fn quantile(&self, share: f64) -> f64 {
         let all: u64 = self.classes.iter().sum();
         let mut below = 0;
@@ -103,7 +104,7 @@ impl FrameLog {
     }
 }
 
-/// The class of a time in milliseconds.
+/// Returns the class of a time in milliseconds.
 fn class(ms: f64) -> usize {
     let class = (ms / LEAST_MS).max(1.0).log(STEP);
     (class as usize).min(CLASSES - 1)

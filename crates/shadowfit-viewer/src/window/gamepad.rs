@@ -1,11 +1,11 @@
-//! Gamepads: the left stick moves, the right stick looks, a click of it goes back to the first view, the triggers sink and
-//! rise, BACK quits.
+//! Gamepads: the left stick moves, the right stick looks around, a click of it restores the initial camera,
+//! the triggers move down and up, BACK quits.
 
 use gilrs::{Axis, Button, EventType, Gilrs};
 use glam::{Vec2, Vec3};
 use shadowfit_egui::Command;
 
-/// Stick travel that counts as rest.
+/// Greatest stick travel that counts as rest.
 const DEAD_ZONE: f32 = 0.12;
 
 /// Every connected gamepad.
@@ -14,12 +14,12 @@ pub(crate) struct Gamepads {
 }
 
 impl Gamepads {
-    /// Opens the gamepads; a machine without support has none.
+    /// Opens the gamepads. A machine without support has none.
     pub(crate) fn new() -> Self {
         Self { gilrs: Gilrs::new().ok() }
     }
 
-    /// Movement and turn by sticks and triggers, and the commands of the pressed buttons.
+    /// Returns movement and turn by sticks and triggers, and the commands of the pressed buttons.
     pub(crate) fn poll(&mut self) -> ((Vec3, Vec2), Vec<Command>) {
         let Some(gilrs) = &mut self.gilrs else { return Default::default() };
         let mut commands = Vec::new();
@@ -42,7 +42,7 @@ impl Gamepads {
     }
 }
 
-/// Travel beyond the dead zone, stretched so that a full push is still 1.
+/// Returns the travel beyond the dead zone, scaled so that a full push is still 1.
 fn beyond_dead_zone(value: f32) -> f32 {
     value.signum() * ((value.abs() - DEAD_ZONE) / (1.0 - DEAD_ZONE)).clamp(0.0, 1.0)
 }

@@ -1,13 +1,13 @@
 #!/bin/sh
-# Runs the tests of a bundle of shadowfit on a graphics adapter of this machine, without Rust:
+# Runs the tests of a shadowfit bundle on a graphics adapter of this machine, without Rust:
 #
 #   ./run.sh [--adapter NAME] [--limit SECONDS] [FILTER...]
 #
-# NAME is `software`, `any` or a part of an adapter's name (default: $SHADOWFIT_ADAPTER, or `any`). A FILTER is a part of a
-# test's path. A test program that runs longer than the limit (default: 1200 seconds) is stopped and counts as failed, if
-# the machine has the command `timeout`. The bundle leaves out golden pictures, which belong to one software driver, and
-# tests of the real window, which need an X server. A test that needs more than the adapter has, as most do on OpenGL, is
-# refused, which is no failure. The output of each program is in logs. Exit code: 0, 1 if a test fails, 2 after bad input.
+# NAME is `software`, `any` or part of an adapter's name (default: $SHADOWFIT_ADAPTER, or `any`). FILTER is part of a
+# test's path. A test program that exceeds the limit (default: 1200 seconds) is stopped and counts as failed, if the
+# machine has the command `timeout`. The bundle omits golden pictures, which need one software driver, and tests of the
+# real window, which need an X server. A test that needs a feature the adapter lacks, like most tests on OpenGL, is
+# refused and not failed. Each program's output is in logs. Exit code: 0, 1 if a test fails, 2 after bad input.
 set -u
 
 refuse() {
@@ -21,7 +21,7 @@ logs=$here/logs
 adapter=${SHADOWFIT_ADAPTER:-any}
 limit=1200
 
-# Each word leaves the list at its front. Filters come back at its end.
+# Removes each word from the front of the list, and appends filters to its end.
 words=$#
 while [ "$words" -gt 0 ]; do
     word=$1
@@ -50,10 +50,10 @@ esac
 [ -s "$here/tests.txt" ] || refuse "$here/tests.txt, the list of the test programs, is missing or empty"
 
 export SHADOWFIT_ADAPTER="$adapter"
-# Unoptimised code needs larger stacks than the usual 2 MiB of a thread.
+# Unoptimised code needs larger stacks than a thread's default of 2 MiB.
 export RUST_MIN_STACK=16777216
 export XDG_RUNTIME_DIR="${XDG_RUNTIME_DIR:-${TMPDIR:-/tmp}}"
-# Mesa's software driver: compile shaders quickly and keep them.
+# Makes Mesa's software driver compile shaders quickly and cache them.
 export GALLIVM_PERF="${GALLIVM_PERF:-nopt}"
 export MESA_SHADER_CACHE_DIR="${MESA_SHADER_CACHE_DIR:-$here/mesa}"
 
@@ -61,7 +61,7 @@ label=$("$workspace/target/debug/examples/adapters" --adapter "$adapter") || exi
 echo "adapter: $label"
 threads=$(nproc 2>/dev/null || echo 2)
 threads=$((threads * 2))
-# Systems other than Linux may lack the command, or its option -k.
+# Other systems than Linux may lack the command or its option -k.
 limited=
 if timeout -k 1 1 true 2>/dev/null; then
     limited="timeout -k 10 $limit"
@@ -70,17 +70,18 @@ mkdir -p "$logs" || exit 2
 rm -f "$logs"/*.log "$logs/table" "$logs/early" "$logs/failed" "$logs/run"
 : >"$logs/table"
 
-# Becomes a test program, with the limit, in a shell that runs in the background: become PROGRAM PACKAGE [ARGUMENT...]
+# Replaces a background shell by a test program with the time limit: become PROGRAM PACKAGE [ARGUMENT...]
 become() {
     program=$workspace/$1
     export CARGO_MANIFEST_DIR="$workspace/$2"
     shift 2
-    # The limit is a command with its arguments, so it has no quotes.
+    # Unquoted, because the limit is a command with arguments.
     cd "$CARGO_MANIFEST_DIR" && exec $limited "$program" "$@" >"$logs/run" 2>&1 </dev/null
 }
 
-# Prints the numbers of result lines and of passed, failed, refused and ignored tests of the last run. A failed test is
-# refused if its section of the output has a line that begins with LACKING. Adds the other failed tests to a list.
+# Prints the numbers of result lines and of passed, failed, refused and ignored tests of the last run. A failed test
+# counts as refused if its section of the output has a line that begins with LACKING. Other failed tests are added to a
+# list.
 judge() {
     awk -v list="$logs/failed" '
         /^test result: / {
@@ -101,7 +102,7 @@ judge() {
         }' "$logs/run"
 }
 
-# Runs a test program, and adds its results to those of its line in the table: tally NAME PROGRAM PACKAGE LOG [ARGUMENT...]
+# Runs a test program and adds its results to its line in the table: tally NAME PROGRAM PACKAGE LOG [ARGUMENT...]
 tally() {
     name=$1
     program=$2
@@ -109,7 +110,7 @@ tally() {
     log=$4
     shift 4
     : >"$logs/run"
-    # In the background, so that an interrupt reaches this shell at once.
+    # Runs in the background, so that this shell receives an interrupt at once.
     become "$program" "$package" "$@" &
     child=$!
     wait "$child"
@@ -118,7 +119,7 @@ tally() {
     cat "$logs/run" >>"$log"
     set -- $(judge)
     run_failed=$(($3 > $4 ? $3 - $4 : 0))
-    # The exit code that this result explains. A refused test fails, too.
+    # The expected exit code for this result. Refused tests also fail.
     explained=0
     [ "$3" = 0 ] || explained=101
     if [ "$1" = 0 ] || [ "$code" != "$explained" ]; then
@@ -150,7 +151,7 @@ while IFS=$tab read -r file folder target <&3; do
     ignored=0
     tally "$target" "$file" "$folder" "$log" "$@" --skip golden --skip window:: --skip own_process \
         "--test-threads=$threads"
-    # These tests measure their process, so each has one of its own.
+    # These tests measure their process, so each runs in a separate one.
     alone=$(cd "$workspace/$folder" &&
         "$workspace/$file" --list --format terse "$@" --skip golden --skip window:: 2>/dev/null |
         sed -n 's/: test$//p' | grep own_process)

@@ -1,4 +1,4 @@
-//! The runner of bundles, on programs that print what the harness of tests prints.
+//! Tests of the bundle's runner, on fake programs that print the output of the test harness.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -6,7 +6,7 @@ use std::process::Command;
 
 use super::{TESTS, write_runner};
 
-/// A bundle of fake programs, in a folder of its own that is removed at the end.
+/// A bundle of fake programs in its own folder, which is removed at the end.
 struct FakeBundle(PathBuf);
 
 impl FakeBundle {
@@ -21,7 +21,7 @@ impl FakeBundle {
         bundle
     }
 
-    /// Writes a program in shell.
+    /// Writes a shell script as a program.
     fn write(&self, program: &str, text: &str) {
         use std::os::unix::fs::PermissionsExt;
         let file = self.0.join("workspace/target/debug").join(program);
@@ -29,7 +29,8 @@ impl FakeBundle {
         fs::set_permissions(file, fs::Permissions::from_mode(0o755)).unwrap();
     }
 
-    /// Writes a test program with these outputs and ends: of most tests, and of the test `a::own_process_x`.
+    /// Writes a test program with these outputs and exit codes: `most` for most tests, the other for
+    /// `a::own_process_x`.
     fn write_test(&self, program: &str, most: &str, own_process: Option<&str>) {
         let list = own_process.map_or("", |_| "echo 'a::own_process_x: test'");
         let own_process = own_process.unwrap_or_default();
@@ -38,11 +39,11 @@ impl FakeBundle {
         self.write(&format!("deps/{program}"), &text);
     }
 
-    /// Runs the runner in a shell on test programs. Returns its exit code with its output and errors.
+    /// Runs the runner in a shell on test programs. Returns its exit code, and its output with its errors.
     fn run(&self, shell: &str, programs: &[&str], arguments: &[&str]) -> (Option<i32>, String) {
         let line = |name: &&str| format!("target/debug/deps/{name}\t.\tx/{name}\n");
         fs::write(self.0.join(TESTS), programs.iter().map(line).collect::<String>()).unwrap();
-        // A relative path and a CDPATH, which lead to the same folder.
+        // A relative path and a CDPATH that both lead to the same folder.
         let (here, folder) = (std::env::temp_dir(), Path::new(self.0.file_name().unwrap()));
         let mut command = Command::new(shell);
         command.arg(folder.join("run.sh")).args(arguments).current_dir(&here).env("CDPATH", &here);
@@ -58,10 +59,10 @@ impl Drop for FakeBundle {
     }
 }
 
-/// Shells that the runner is for: `sh` is dash on Debian.
+/// Shells that the runner supports. `sh` is dash on Debian.
 const SHELLS: [&str; 2] = ["sh", "bash"];
 
-/// Outputs of test programs with their ends: harnesses with good, bad and refused tests, and crashes.
+/// Outputs and exit codes of test programs: harnesses with good, bad and refused tests, and crashes.
 const GOOD: &str = "echo 'test result: ok. 3 passed; 0 failed; 1 ignored; 0 measured; 0 filtered out'";
 const BAD: &str = "echo 'test a::bad ... FAILED'; echo '---- a::bad stdout ----'; echo 'assertion failed'
     echo 'test result: FAILED. 1 passed; 1 failed; 0 ignored; 0 measured; 0 filtered out'; exit 101";

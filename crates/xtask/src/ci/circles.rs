@@ -1,10 +1,10 @@
-//! Circles of imports: files that name each other's items, so that none can be read without the others. Rooms are counted
-//! in the same way: a room is a folder or a file directly below `src`, with all of its files. The check fails if a number
-//! grows, and if an accepted number is too high, so that both only fall.
+//! Import cycles: files that use each other's items, so that none can be read without the others. Rooms are
+//! counted in the same way: a room is a folder or a file directly below `src`, with all of its files. The
+//! check fails if a number grows, and also if an accepted number is too high, so that both numbers only fall.
 //!
-//! The files of each crate are scanned as text, without tests. An import or a path is an edge from its file to the file
-//! of the item. Re-exports are followed to the item, unless a module on the way has items of its own. Items of the files
-//! above a file, which declare its module, make no edge.
+//! The files of each crate are scanned as text, without tests. An import or a path is an edge from its file
+//! to the file of the item. Re-exports are followed to the item, unless a module on the way has items of its
+//! own. Items of parent modules' files create no edge.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
@@ -14,33 +14,33 @@ use anyhow::{Result, ensure};
 use crate::machine::Machine;
 use crate::source::{is_part_of_word, texts, without_comments, without_tests};
 
-/// Circles of files that are left to break. The goal is 0.
+/// Number of remaining circles of files. The goal is 0.
 const ACCEPTED: usize = 0;
 
-/// Rooms in circles that are left to break, in all crates. The goal is 0.
+/// Number of remaining rooms in circles, in all crates. The goal is 0.
 const ACCEPTED_ROOMS: usize = 0;
 
-/// Longest chain of re-exports. A longer one repeats itself: a name of another crate, which stands for itself.
+/// Longest chain of re-exports. A longer chain is a loop: a name of another crate, which resolves to itself.
 const MAX_HOPS: usize = 8;
 
-/// Words before the name of an item.
+/// Keywords before the name of an item.
 const ITEM_WORDS: [&str; 8] = ["fn", "struct", "enum", "trait", "const", "static", "type", "union"];
 
 /// Names from the crate's root to a module or an item.
 type Names<'a> = Vec<&'a str>;
 
-/// A module's names.
+/// The names in a module.
 #[derive(Default)]
 struct Module<'a> {
     file: &'a str,
     items: BTreeSet<&'a str>,
-    /// Names that `use` brings in, with their paths.
+    /// Names that `use` imports, with their paths.
     imports: BTreeMap<&'a str, Names<'a>>,
-    /// Modules whose names `use` brings in with `*`.
+    /// Modules that `use` imports with `*`.
     globs: Vec<Names<'a>>,
 }
 
-/// A place in the code that names an item.
+/// A position in the code that names an item.
 struct Mention<'a> {
     file: &'a str,
     module: Names<'a>,
@@ -55,10 +55,10 @@ struct Modules<'a> {
     mentions: Vec<Mention<'a>>,
 }
 
-/// A token, and the number of its line.
+/// A token and its line number.
 type Token<'a> = (&'a str, usize);
 
-/// The files that each file names, with the first mention of each.
+/// The files that each file uses, with the first mention of each.
 type Edges<'a> = BTreeMap<&'a str, BTreeMap<&'a str, &'a Mention<'a>>>;
 
 /// Counts the circles of all crates.
@@ -89,8 +89,8 @@ pub(super) fn check(_: &Machine) -> Result<()> {
     Ok(())
 }
 
-/// Reads the files of each crate without comments and tests, by their names below the crate's folder of sources. A folder
-/// with a `main.rs` is another crate.
+/// Reads the files of each crate without comments and tests, by their names below the crate's source folder.
+/// A folder with a `main.rs` is another crate.
 fn crates() -> Result<BTreeMap<String, BTreeMap<String, String>>> {
     let mut crates: BTreeMap<String, BTreeMap<String, String>> = BTreeMap::new();
     let texts = texts("crates")?;
@@ -109,7 +109,7 @@ fn crates() -> Result<BTreeMap<String, BTreeMap<String, String>>> {
     Ok(crates)
 }
 
-/// Returns the rooms that each room names. The crate's root is none.
+/// Returns the rooms that each room uses. The crate's root is not a room.
 fn edges_of_rooms<'a>(edges: &Edges<'a>) -> Edges<'a> {
     let mut rooms = Edges::new();
     for (from, named) in edges {
@@ -129,7 +129,7 @@ fn room(file: &str) -> &str {
 }
 
 impl<'a> Modules<'a> {
-    /// Reads the modules that the crate's root declares, and those that they declare.
+    /// Reads the modules that the crate's root declares, recursively.
     fn of(codes: &'a BTreeMap<String, String>) -> Self {
         let mut crate_modules = Self::default();
         let mut declared: Vec<(String, Names)> = ["lib.rs", "main.rs"].map(|root| (root.to_owned(), Vec::new())).into();
@@ -144,7 +144,7 @@ impl<'a> Modules<'a> {
         crate_modules
     }
 
-    /// Reads a file, which has the module `module`, and returns the modules that it declares.
+    /// Reads a file, which is the module `module`. Returns the modules that it declares.
     fn read(&mut self, file: &'a str, code: &'a str, module: Names<'a>) -> Vec<Names<'a>> {
         let tokens = tokens(code);
         let mut declared = Vec::new();
@@ -182,7 +182,7 @@ impl<'a> Modules<'a> {
                 _ if ITEM_WORDS.contains(&token) && after.starts_with(is_part_of_word) => {
                     self.modules.entry(inner).or_default().items.insert(after);
                 }
-                // A path in the code; `pub(in path)` is none.
+                // A path in the code, but not the path of `pub(in path)`.
                 _ if after == "::" && token.starts_with(is_part_of_word) && !["::", ".", "in"].contains(&before) => {
                     let names = path_at(&tokens[at - 1..]);
                     at += 2 * (names.len() - 1);
@@ -194,7 +194,7 @@ impl<'a> Modules<'a> {
         declared
     }
 
-    /// Reads the imports of a `use`, of which `tokens` are those behind the word, up to its semicolon.
+    /// Reads the imports of a `use`. `tokens` are the tokens after the keyword, up to its semicolon.
     fn read_imports(&mut self, module: &Names<'a>, tokens: &[Token<'a>]) {
         let mut prefixes: Vec<Names> = vec![Vec::new()];
         let (mut names, mut alias): (Names, Option<&str>) = (Vec::new(), None);
@@ -229,8 +229,8 @@ impl<'a> Modules<'a> {
         }
     }
 
-    /// Returns the file of the item that a mention names, `None` for modules and other crates. Re-exports are followed
-    /// through modules without items of their own, and through the modules around the mention.
+    /// Returns the file of the item that a mention names, or `None` for modules and other crates. Follows
+    /// re-exports through modules without their own items, and through the modules around the mention.
     fn file_of(&self, mention: &Mention<'a>) -> Option<&'a str> {
         let mut path = mention.path.clone();
         for _ in 0..MAX_HOPS {
@@ -265,7 +265,7 @@ impl<'a> Modules<'a> {
     }
 }
 
-/// Returns the words, double colons and other characters of a text, each with the number of its line.
+/// Returns the words, double colons and other characters of a text, each with its line number.
 fn tokens(code: &str) -> Vec<Token<'_>> {
     let mut tokens = Vec::new();
     for (index, mut rest) in code.lines().enumerate() {
@@ -288,7 +288,7 @@ fn path_at<'a>(tokens: &[Token<'a>]) -> Names<'a> {
     tokens.iter().take(1).chain(further.map(|pair| &pair[1])).map(|token| token.0).collect()
 }
 
-/// Returns the names from the crate's root of a path in a module.
+/// Resolves a path in a module to names from the crate's root.
 fn from_root<'a>(module: &[&'a str], path: &[&'a str]) -> Names<'a> {
     let mut names = module.to_vec();
     for name in path {
@@ -325,7 +325,7 @@ fn reached_from<'a>(file: &'a str, edges: &Edges<'a>) -> BTreeSet<&'a str> {
     reached
 }
 
-/// Returns the first place of each import within a circle, a line each.
+/// Returns the first position of each import within a circle, one per line.
 fn described(circle: &BTreeSet<&str>, edges: &Edges) -> String {
     let mut lines = String::new();
     for named in circle.iter().filter_map(|name| edges.get(name)) {

@@ -1,7 +1,7 @@
-//! What the core crate promises beyond this machine: targets without a standard library, each feature alone, the same
-//! bits everywhere, both ends of the range of glam, and its own minimum Rust version.
+//! The core crate's guarantees beyond this machine: targets without a standard library, each feature alone,
+//! the same bits everywhere, the oldest and newest supported glam, and the core's own minimum Rust version.
 //!
-//! Where a target, a toolchain or a runtime cannot be had, the check says what it did not do.
+//! If a target, a toolchain or a runtime is not available, the check prints which part it skipped.
 
 use std::fs;
 use std::path::Path;
@@ -13,19 +13,19 @@ use super::{is_release, rust_version};
 use crate::machine::Machine;
 use crate::process::{self, has_target, target_folder};
 
-/// A microcontroller that has no standard library at all, which is the proof that the core needs none.
+/// A microcontroller target without a standard library, which proves that the core needs none.
 const BARE_TARGET: &str = "thumbv7em-none-eabi";
 
-/// The browser.
+/// The target of browsers.
 const WASM_TARGET: &str = "wasm32-unknown-unknown";
 
-/// Features that have to build without the standard library, each alone and all together.
+/// Features that must build without the standard library, each alone and all together.
 const FEATURES: [&str; 6] = ["", "alloc", "serde", "bytemuck", "mint", "alloc,serde,bytemuck,mint"];
 
 /// The package that hashes fits.
 const DETERMINISM: &str = "shadowfit-determinism";
 
-/// The folder, in the target folder, of a workspace with a lock file of its own.
+/// Folder below the target folder for a workspace with its own lock file.
 const COPY_OF_THE_CORE: &str = "oldest-glam";
 
 /// Builds the core without the standard library.
@@ -37,7 +37,7 @@ pub(super) fn no_std(_: &Machine) -> Result<()> {
         if target {
             command.args(["--target", BARE_TARGET]);
         }
-        // Some lints ask for changes that break the build with more features.
+        // Some lints suggest changes that break the build with more features.
         process::run(process::without_lints(&mut command))?;
     }
     if target {
@@ -50,8 +50,8 @@ pub(super) fn no_std(_: &Machine) -> Result<()> {
     Ok(())
 }
 
-/// Compares the hash of the fits without SIMD and in WebAssembly with the pinned one; the ordinary tests do so on this
-/// machine as it is.
+/// Compares the hash of the fits without SIMD and in WebAssembly with the pinned hash. The ordinary tests
+/// compare it for this machine's own build.
 pub(super) fn determinism(_: &Machine) -> Result<()> {
     process::run(process::cargo("test").args(["--package", DETERMINISM, "--features", "scalar-math"]))?;
     if !has_target(WASM_TARGET) {
@@ -68,10 +68,11 @@ pub(super) fn determinism(_: &Machine) -> Result<()> {
     process::run(Command::new("node").arg(host).arg(module))
 }
 
-/// Compares the hash of the fits with the oldest glam of the core's range, and builds and runs an engine that pins it and
-/// hands its own vectors to the core. The lock file holds the newest glam, with which everything else is built.
+/// Compares the hash of the fits with the oldest supported glam, and builds and runs an engine that pins this
+/// version and passes its own vectors to the core. All other builds use the newest glam, from the lock file.
 pub(super) fn oldest_glam(_: &Machine) -> Result<()> {
-    // Both packages in each command: cargo would compile the core once more for the engine's features alone.
+    // Both packages in each command: cargo would otherwise compile the core once more for the engine's
+    // features.
     let packages = ["--package", DETERMINISM, "--package", "engine", "--all-features"];
     let oldest = with_oldest_glam(&[&["build"], &packages[..]].concat())?;
     process::run(&mut Command::new(target_folder().join("debug/engine")))?;
@@ -80,15 +81,15 @@ pub(super) fn oldest_glam(_: &Machine) -> Result<()> {
     Ok(())
 }
 
-/// Runs all tests of the core with the oldest glam of its range.
+/// Runs all tests of the core with the oldest supported glam.
 ///
 /// # Errors
-/// When a test fails or the older glam cannot be had.
+/// If a test fails or the older glam is not available.
 pub(crate) fn suite_with_oldest_glam() -> Result<()> {
     with_oldest_glam(&["test", "--package", "shadowfit", "--all-features", "--lib", "--tests"]).map(|_| ())
 }
 
-/// Runs cargo in a copy of the core whose lock file has the oldest glam of its range; returns that version.
+/// Runs cargo in a copy of the core whose lock file has the oldest supported glam. Returns that version.
 fn with_oldest_glam(arguments: &[&str]) -> Result<String> {
     let manifest = fs::read_to_string(process::root().join("Cargo.toml"))?;
     let oldest = oldest_version(&manifest, "glam").context("the workspace's Cargo.toml states no range of glam")?;
@@ -97,7 +98,7 @@ fn with_oldest_glam(arguments: &[&str]) -> Result<String> {
         .and_then(|()| engine_with(oldest, &folder.join("crates/engine")))
         .with_context(|| format!("cannot write {}", folder.display()))?;
     let update = ["update", "--package", "glam", "--precise", oldest];
-    // Asking the registry takes long, and cargo's cache may hold the crate already.
+    // Try offline first: a query of the registry takes long, and cargo's cache may hold the crate already.
     in_copy_of_the_core(&[&update[..], &["--offline"]].concat()).or_else(|_| in_copy_of_the_core(&update))?;
     in_copy_of_the_core(arguments)?;
     Ok(oldest.to_owned())
@@ -106,12 +107,13 @@ fn with_oldest_glam(arguments: &[&str]) -> Result<String> {
 fn in_copy_of_the_core(arguments: &[&str]) -> Result<()> {
     let [subcommand, rest @ ..] = arguments else { return Ok(()) };
     let mut command = process::cargo_here(subcommand);
-    // The copied profiles name packages that are not in the copy, and cargo would warn about each.
+    // Quiet, since the copied profiles name packages that are not in the copy, and cargo would warn about
+    // each.
     command.args(rest).arg("--quiet").current_dir(target_folder().join(COPY_OF_THE_CORE));
     process::run(process::without_lints(&mut command).env("CARGO_TARGET_DIR", target_folder()))
 }
 
-/// Checks the core with the oldest Rust that it promises, which is older than the workspace's.
+/// Checks the core with its own minimum Rust, which is older than the workspace's.
 pub(super) fn msrv(_: &Machine) -> Result<()> {
     let manifest = fs::read_to_string(process::root().join("crates/shadowfit/Cargo.toml"))?;
     let promised = rust_version(&manifest).context("the core's Cargo.toml states no rust-version")?;
@@ -138,20 +140,20 @@ pub(super) fn msrv(_: &Machine) -> Result<()> {
     )
 }
 
-/// Whether a toolchain, as rustup lists it, is of a release.
+/// Returns whether a toolchain, as rustup lists it, is of a release.
 fn names(toolchain: &str, version: &str) -> bool {
     let number = toolchain.split('-').next().unwrap_or_default();
     is_release(&format!("rustc {number}"), version)
 }
 
-/// The least version of a dependency in the workspace's manifest that states a range.
+/// Returns the lowest version of a dependency from its range in the workspace's manifest.
 fn oldest_version<'a>(manifest: &'a str, dependency: &str) -> Option<&'a str> {
     let line = manifest.lines().find(|line| line.split('=').next().is_some_and(|name| name.trim() == dependency))?;
     let range = &line[line.find(">=")? + 2..];
     range.split([',', '"']).next().map(str::trim)
 }
 
-/// Writes a workspace of the core and its hash alone, so that its lock file can differ.
+/// Writes a workspace with only the core and its hash, so that it can have its own lock file.
 fn copy_of_the_core(folder: &Path, manifest: &str) -> Result<()> {
     let _ = fs::remove_dir_all(folder);
     let root = process::root();
@@ -170,7 +172,7 @@ fn copy_of_the_core(folder: &Path, manifest: &str) -> Result<()> {
     Ok(())
 }
 
-/// Writes a crate beside the core that is the first example, but with its own version of glam.
+/// Writes a crate next to the core that is the first example with its own version of glam.
 fn engine_with(glam: &str, folder: &Path) -> Result<()> {
     let example = fs::read_to_string(process::root().join("examples/fit_once.rs"))?;
     let main = example.replace("use shadowfit::glam::", "use glam::");
@@ -199,7 +201,7 @@ fn copy_folder(from: &Path, to: &Path) -> Result<()> {
     Ok(())
 }
 
-/// The sections of a manifest whose header is kept.
+/// Returns the sections of a manifest whose header is kept.
 fn sections(manifest: &str, keep: impl Fn(&str) -> bool) -> String {
     let mut is_kept = false;
     let mut kept = String::new();

@@ -1,6 +1,7 @@
-//! The size table: lines of code by crate, without tests, comments and blank lines, and the number of long functions.
+//! The size table: lines of code per crate, without tests, comments and blank lines, and the number of long
+//! functions.
 //!
-//! The check never fails. It prints the numbers, so that the log shows how much code a change adds.
+//! The check never fails. It only prints the numbers, so that the log shows how much code a change adds.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
@@ -11,10 +12,10 @@ use anyhow::Result;
 use crate::machine::Machine;
 use crate::source::{is_part_of_word, item_end, test_items, texts, without_comments, without_tests};
 
-/// Folders that have code.
+/// Folders with code.
 const FOLDERS: [&str; 3] = ["crates", "examples", "tests"];
 
-/// Most lines of a function that fits on a screen.
+/// Greatest number of lines of a function that fits on a screen.
 const SCREEN: usize = 40;
 
 /// Lines of the files of a crate or folder.
@@ -36,7 +37,7 @@ pub(super) fn check(_: &Machine) -> Result<()> {
     Ok(())
 }
 
-/// Returns the table of files, given by their names relative to the workspace's folder.
+/// Returns the table for files, given by their names relative to the workspace's folder.
 fn table(texts: &BTreeMap<String, String>) -> String {
     let test_modules: BTreeSet<String> =
         texts.iter().flat_map(|(file, text)| test_modules(file, &without_comments(text))).collect();
@@ -75,7 +76,7 @@ fn filled_lines(code: &str) -> usize {
     code.lines().filter(|line| !line.trim().is_empty()).count()
 }
 
-/// Returns the modules that a file declares for tests alone, as file names without their ending.
+/// Returns the test-only modules that a file declares, as file names without extension.
 fn test_modules(file: &str, code: &str) -> Vec<String> {
     let (folder, name) = file.rsplit_once('/').unwrap_or(("", file));
     let stem = match name {

@@ -1,5 +1,5 @@
-//! The moving picture at the head of the README: a script that the viewer plays, whose pictures of the window are put
-//! together by the program `film`. What is shown when, and for how long, is [`storyboard`], from top to bottom.
+//! The animated picture at the top of the README. The viewer plays a script and saves pictures of its window,
+//! and the program `film` combines them. [`storyboard`] defines all frames and their durations.
 
 use std::fs;
 use std::path::Path;
@@ -10,23 +10,23 @@ use super::{bytes, empty_folder, open, save};
 use crate::machine::Machine;
 use crate::{process, run};
 
-/// Its file among the docs' pictures.
+/// Its file name among the docs' pictures.
 const FILE: &str = "film.webp";
 
-/// Most bytes of it: what a page may well load before anyone has read a line.
+/// Size limit of the film, in bytes: acceptable for a page that loads it at once.
 const MOST_BYTES: u64 = 3_000_000;
 
-/// Size of the viewer's window in pixels: the least in which its bars are one line each. The README shows the film 830
-/// pixels wide or so, where its text has to stay readable.
+/// Size of the viewer's window, in pixels: the smallest one that fits each bar in a line. The README
+/// shows the film about 830 pixels wide, where its text must stay readable.
 const WINDOW: &str = "1024x576";
 
-/// Milliseconds of a frame in which something moves: about 16 frames a second.
+/// Duration of a frame with movement, in milliseconds: about 16 frames per second.
 const STEP: u32 = 64;
 
-/// Frames in which the last picture fades into the first one.
+/// Number of frames for fading the last picture into the first one.
 const FADE: u32 = 6;
 
-/// Frames that the viewer's interface and its maps take to settle after a change.
+/// Number of frames until the viewer's interface and its maps settle after a change.
 const SETTLING: u32 = 20;
 
 /// Eye and target of a camera, in metres.
@@ -35,19 +35,21 @@ type View = [[f32; 3]; 2];
 /// The courtyard's start view.
 const WIDE: View = [[-2.1, 1.6, 4.5], [1.3, 1.3, -1.0]];
 
-/// The wanderer from close by: where the viewer shows acne in that pose, so that what its card says is true here.
+/// The wanderer from close by: the viewer shows acne at this place in that pose, so the text of its card is
+/// true here.
 const CLOSE: View = [[1.22, 1.36, 1.05], [-0.03, 1.36, 0.05]];
 
-/// Seconds of the animation, the last of which is its end and its beginning, between which the wanderer walks up.
+/// Times of the animation between which the wanderer walks up, in seconds. The second one is both its end and
+/// its start.
 const WALK: [f32; 2] = [9.64, 11.88];
 
-/// A picture of the film: what the viewer does before it, and how many milliseconds it is shown.
+/// A picture of the film: the viewer's actions before it, and its duration in milliseconds.
 struct Frame {
     actions: Vec<String>,
     shown: u32,
 }
 
-/// Renders the film and puts it among the docs' pictures.
+/// Renders the film and saves it among the docs' pictures.
 pub(super) fn film(machine: &Machine, images: &Path) -> Result<()> {
     let folder = empty_folder("film")?;
     let frames = storyboard();
@@ -65,12 +67,12 @@ pub(super) fn film(machine: &Machine, images: &Path) -> Result<()> {
     Ok(())
 }
 
-/// What is shown: a flight, acne, its wrong pixels, its cure, and two techniques side by side.
+/// Returns the frames: a flight, acne, its wrong pixels, its cure, and two techniques side by side.
 fn storyboard() -> Vec<Frame> {
     let begin = format!("scrub {}", WALK[0]);
     let mut frames = vec![still(&[&begin], 240)];
     frames.extend(flight([WIDE, CLOSE], WALK, 36));
-    // The viewer looks for a view of its own, which may differ from one version to the next.
+    // Set the camera, since the view that the viewer finds may differ between versions.
     frames.push(still(&["scrub 0", "show acne", "await loaded", &look(CLOSE)], 1200));
     frames.push(still(&["view error"], 1000));
     frames.push(still(&["fix", "await loaded"], 680));
@@ -83,20 +85,20 @@ fn storyboard() -> Vec<Frame> {
     frames
 }
 
-/// A picture that is looked at for some milliseconds, once everything has settled.
+/// Returns a picture that is shown for some milliseconds, taken after everything has settled.
 fn still(actions: &[&str], shown: u32) -> Frame {
     let settled = format!("frames {SETTLING}");
     let all = actions.iter().copied().chain(["await judged", &settled]);
     Frame { actions: all.map(str::to_owned).collect(), shown }
 }
 
-/// A picture of a movement.
+/// Returns a picture of a movement.
 fn moving(mut actions: Vec<String>) -> Frame {
     actions.extend(["await judged", "frames 2"].map(str::to_owned));
     Frame { actions, shown: STEP }
 }
 
-/// A flight of the camera in that many frames, which ends at the second view and time, while the animation goes on.
+/// Returns the frames of a camera flight that ends at the second view and time, while the animation plays.
 fn flight([from, to]: [View; 2], [start, end]: [f32; 2], frames: u8) -> impl Iterator<Item = Frame> {
     (1..=frames).map(move |frame| {
         let share = f32::from(frame) / f32::from(frames);
@@ -114,12 +116,12 @@ fn mix(from: f32, to: f32, share: f32) -> f32 {
     from + (to - from) * share
 }
 
-/// A share of a movement's time as a share of its way: it begins and ends gently.
+/// Converts a share of a movement's time to a share of its way, with a smooth start and end.
 fn eased(share: f32) -> f32 {
     share * share * (3.0 - 2.0 * share)
 }
 
-/// The script that the viewer plays. Each picture is named by when it comes on, in milliseconds.
+/// Returns the script for the viewer. The name of each picture is its start time, in milliseconds.
 fn script(frames: &[Frame]) -> String {
     let mut lines = vec!["await loaded".to_owned()];
     let mut start = 0;
@@ -136,7 +138,7 @@ fn file(start: u32) -> String {
     format!("{start:05}.png")
 }
 
-/// Fades the last picture into the first one, and returns when the film ends, in milliseconds.
+/// Fades the last picture into the first one. Returns the end time of the film, in milliseconds.
 fn fade(folder: &Path, frames: &[Frame]) -> Result<u32> {
     let end: u32 = frames.iter().map(|frame| frame.shown).sum();
     let last = end - frames.last().map_or(0, |frame| frame.shown);

@@ -1,16 +1,17 @@
-//! Drawing: a light panel with lines, areas and labels, written by the `svg` crate.
+//! SVG drawing: a light panel with lines, areas and labels, written by the `svg` crate.
 //!
-//! Page coordinates are pixels at a width of 720, y down. A [`Frame`] takes plot coordinates (y up) to them.
+//! Page coordinates are pixels at a width of 720, y down. A [`Frame`] converts plot coordinates (y up) to
+//! them.
 
 use shadowfit::glam::DVec2;
 use svg::Document;
 use svg::node::Node;
 use svg::node::element::{Circle, Path, Polygon, Polyline, Rectangle, Text as TextElement, Title};
 
-/// Width of every picture, in pixels: that of a page's text on GitHub, nearly.
+/// Width of every picture, in pixels: about the width of text on a GitHub page.
 const WIDTH: f64 = 720.0;
 
-/// The colours, chosen to be told apart by colour-blind readers as well (M. Okabe and K. Ito's set).
+/// Colours that colour-blind readers can also distinguish (M. Okabe and K. Ito's set).
 pub(super) const INK: &str = "#2b2b2b";
 pub(super) const GREY: &str = "#8a8a8a";
 pub(super) const BLUE: &str = "#0072b2";
@@ -22,11 +23,11 @@ pub(super) const PURPLE: &str = "#a5488a";
 /// Colours of the maps, the nearest first.
 pub(super) const MAPS: [&str; 4] = [BLUE, GREEN, YELLOW, PURPLE];
 
-/// Size of labels and of smaller ones, in pixels.
+/// Font sizes of labels and of smaller labels, in pixels.
 const LABEL: f64 = 14.0;
 const SMALL: f64 = 12.0;
 
-/// How a shape is painted: its area's colour and opacity, and its line's colour and width in pixels.
+/// Style of a shape: colour and opacity of its area, colour and width (in pixels) of its line.
 #[derive(Clone, Copy)]
 pub(super) struct Paint {
     fill: (&'static str, f64),
@@ -34,45 +35,45 @@ pub(super) struct Paint {
     is_dashed: bool,
 }
 
-/// An area without an outline.
+/// Returns the style of an area without an outline.
 pub(super) const fn fill(colour: &'static str, opacity: f64) -> Paint {
     stroke("none", 0.0).filled(colour, opacity)
 }
 
-/// A line of a width in pixels.
+/// Returns the style of a line, with its width in pixels.
 pub(super) const fn stroke(colour: &'static str, width: f64) -> Paint {
     Paint { fill: ("none", 1.0), stroke: (colour, width), is_dashed: false }
 }
 
 impl Paint {
-    /// The same with its area filled.
+    /// Returns the style with a filled area.
     pub(super) const fn filled(self, colour: &'static str, opacity: f64) -> Self {
         Self { fill: (colour, opacity), ..self }
     }
 
-    /// The same with a dashed line.
+    /// Returns the style with a dashed line.
     pub(super) const fn dashed(self) -> Self {
         Self { is_dashed: true, ..self }
     }
 }
 
-/// Where a label stands beside its point, as SVG says it.
+/// Alignment of a label to its point, as SVG's `text-anchor`.
 pub(super) type Side = &'static str;
 
-/// Ends at the point.
+/// The label ends at the point.
 pub(super) const LEFT: Side = "end";
-/// Is centred on the point.
+/// The label is centred on the point.
 pub(super) const MIDDLE: Side = "middle";
-/// Begins at the point.
+/// The label begins at the point.
 pub(super) const RIGHT: Side = "start";
 
-/// A picture in the making.
+/// A picture under construction.
 pub(super) struct Canvas {
     document: Document,
 }
 
 impl Canvas {
-    /// A light panel of the usual width, in pixels, with a title that screen readers say.
+    /// Creates a light panel of the usual width, with a title for screen readers. `height` is in pixels.
     pub(super) fn new(height: f64, title: &str) -> Self {
         let panel = Rectangle::new()
             .set("x", 0.5)
@@ -98,9 +99,9 @@ impl Canvas {
         format!("{}\n", self.document)
     }
 
-    /// Draws what shows only inside a rectangle of the page, with an outline and a title above.
+    /// Draws into a rectangle of the page, clipped to it, with an outline and a title above.
     pub(super) fn panel(&mut self, min: DVec2, size: DVec2, title: &str, draw: impl FnOnce(&mut Self)) {
-        // An SVG element inside another one hides what is outside of it.
+        // A nested SVG element clips its content.
         let document = Document::new()
             .set("x", min.x)
             .set("y", min.y)
@@ -114,17 +115,17 @@ impl Canvas {
         self.bold(min - DVec2::new(0.0, 12.0), RIGHT, INK, title);
     }
 
-    /// A label in a colour. Its baseline lies at the point.
+    /// Draws a label with its baseline at the point.
     pub(super) fn text(&mut self, at: DVec2, side: Side, colour: &str, text: &str) {
         self.write(at, side, colour, (LABEL, "normal"), text);
     }
 
-    /// A label in bold.
+    /// Draws a bold label.
     pub(super) fn bold(&mut self, at: DVec2, side: Side, colour: &str, text: &str) {
         self.write(at, side, colour, (LABEL, "bold"), text);
     }
 
-    /// A smaller label, for axes.
+    /// Draws a smaller label, for axes.
     pub(super) fn small(&mut self, at: DVec2, side: Side, colour: &str, text: &str) {
         self.write(at, side, colour, (SMALL, "normal"), text);
     }
@@ -159,7 +160,7 @@ impl Canvas {
         self.add(Polyline::new().set("points", joined(points)), paint);
     }
 
-    /// Many dots of a diameter in pixels, as one element.
+    /// Draws many dots of a diameter in pixels, as one element.
     pub(super) fn dots(&mut self, centres: impl IntoIterator<Item = DVec2>, diameter: f64, colour: &'static str) {
         let dots: Vec<String> = centres.into_iter().map(|p| format!("M{},{}h0", rounded(p.x), rounded(p.y))).collect();
         self.add(Path::new().set("d", dots.concat()), stroke(colour, diameter));
@@ -169,13 +170,13 @@ impl Canvas {
         self.add(Circle::new().set("cx", rounded(centre.x)).set("cy", rounded(centre.y)).set("r", radius), paint);
     }
 
-    /// A rectangle from two opposite corners.
+    /// Draws a rectangle given by two opposite corners.
     pub(super) fn rectangle(&mut self, a: DVec2, b: DVec2, paint: Paint) {
         self.polygon([a, DVec2::new(b.x, a.y), b, DVec2::new(a.x, b.y)], paint);
     }
 }
 
-/// A tenth of a pixel is finer than anyone sees. Adding +0 makes -0 positive.
+/// Rounds to a tenth of a pixel, which is finer than visible. Adding +0 makes -0 positive.
 fn rounded(v: f64) -> f64 {
     libm::round(v * 10.0) / 10.0 + 0.0
 }
@@ -185,7 +186,7 @@ fn joined(points: impl IntoIterator<Item = DVec2>) -> String {
     points.join(" ")
 }
 
-/// Takes plot coordinates, y up, to the page.
+/// A transform from plot coordinates (y up) to page coordinates.
 #[derive(Clone, Copy)]
 pub(super) struct Frame {
     scale: DVec2,
@@ -193,20 +194,21 @@ pub(super) struct Frame {
 }
 
 impl Frame {
-    /// Takes the range `low..high` to the rectangle of the page with the corners `min` and `max`; both axes on their
-    /// own.
+    /// Returns the transform that maps the range `low..high` to the rectangle of the page with the corners
+    /// `min` and `max`, scaling each axis separately.
     pub(super) fn stretched(low: DVec2, high: DVec2, min: DVec2, max: DVec2) -> Self {
         let scale = DVec2::new(max.x - min.x, min.y - max.y) / (high - low);
         Self { scale, offset: DVec2::new(min.x, max.y) - low * scale }
     }
 
-    /// Puts a point in the middle of a place on the page, at a scale in pixels per unit.
+    /// Returns the transform that maps `centre` to `middle` on the page, at a scale in pixels per unit.
     pub(super) fn scaled(centre: DVec2, middle: DVec2, scale: f64) -> Self {
         let scale = DVec2::new(scale, -scale);
         Self { scale, offset: middle - centre * scale }
     }
 
-    /// Puts points into a rectangle of the page at one scale for both axes, as large as they fit.
+    /// Returns the transform that fits points into a rectangle of the page, with the same scale for both
+    /// axes.
     pub(super) fn around(points: impl IntoIterator<Item = DVec2>, min: DVec2, max: DVec2) -> Self {
         let (low, high) = bounds(points);
         let scale = ((max - min) / (high - low)).min_element();
@@ -218,7 +220,7 @@ impl Frame {
     }
 }
 
-/// Least and greatest coordinates.
+/// Returns the least and greatest coordinates.
 pub(super) fn bounds(points: impl IntoIterator<Item = DVec2>) -> (DVec2, DVec2) {
     points.into_iter().fold((DVec2::MAX, DVec2::MIN), |(low, high), p| (low.min(p), high.max(p)))
 }

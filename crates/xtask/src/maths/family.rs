@@ -1,4 +1,4 @@
-//! The family at a glance: one camera, one sun, six maps.
+//! Draws six kinds of maps for the same camera and sun.
 
 use anyhow::Result;
 use shadowfit::glam::{DVec2, Vec3};
@@ -20,7 +20,7 @@ const VILLAGE: [Aabb; 6] = [
     Aabb::new(Vec3::new(19.0, 0.0, -32.0), Vec3::new(23.0, 4.0, -28.0)),
 ];
 
-/// The maps and their colours. The second is what the others are compared with.
+/// The maps and their colours. The second one is the reference for comparisons.
 const MAPS: [(&str, FitKind, RectangleKind, &str); 6] = [
     ("XNA sample", FitKind::XnaSample, RectangleKind::AxisAligned, GREY),
     ("Frustum AABB", FitKind::FrustumAabb, RectangleKind::AxisAligned, RED),
@@ -43,7 +43,7 @@ pub(super) fn draw() -> Result<String> {
     }
     let mut canvas = Canvas::new(2.0 * ROW + 36.0, "Six maps of one camera and one sun, seen from the light");
     let look = Look::from_light(&fits[1]);
-    // One scale for all, each map in the middle of its place.
+    // One scale for all maps, each centred in its cell.
     let extents = fits.iter().map(|fit| bounds(look.map(fit)));
     let scale = (ROW - 58.0) / extents.map(|(low, high)| (high - low).max_element()).fold(0.0, f64::max);
     for (i, (name, _, _, colour)) in MAPS.into_iter().enumerate() {
@@ -62,12 +62,12 @@ pub(super) fn draw() -> Result<String> {
     }
     let note = DVec2::new(64.0, 2.0 * ROW + 24.0);
     canvas.circle(note - DVec2::new(14.0, 5.0), 6.0, fill("#f4e3b2", 1.0));
-    let text = "what the camera sees, and houses; one texel of 2048², its area beside the AABB's";
+    let text = "view frustum and houses; one texel of 2048², and its area relative to the AABB's";
     canvas.text(note, RIGHT, GREY, text);
     Ok(canvas.finish())
 }
 
-/// Size of a fit's texels, and their area beside another fit's.
+/// Returns the size of a fit's texels, and their area relative to another fit's.
 fn texels(fit: &LightProjection, other: &LightProjection) -> String {
     let (size, other) = (fit.texel_size * 100.0, other.texel_size * 100.0);
     let share = 100.0 * size.x * size.y / (other.x * other.y);

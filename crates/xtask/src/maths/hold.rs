@@ -1,4 +1,4 @@
-//! Held maps: a turning camera, its fresh fits, and the few maps that hysteresis makes instead.
+//! Draws held maps: a turning camera, its fresh fits, and the few maps that hysteresis keeps instead.
 
 use anyhow::Result;
 use shadowfit::glam::{DVec2, DVec3, Vec3};
@@ -10,7 +10,7 @@ use super::scene::{Fitter, Look, camera, draw_frustum, one_map, plain_fit};
 
 const LIGHT: Vec3 = Vec3::new(0.25, -0.9, 0.2);
 
-/// Frames of the camera's turn.
+/// Number of frames of the camera's turn.
 const FRAMES: usize = 96;
 
 pub(super) fn draw() -> Result<String> {
@@ -50,14 +50,14 @@ pub(super) fn draw() -> Result<String> {
     Ok(canvas.finish())
 }
 
-/// A camera that turns by 0.8 degrees a frame while it walks.
+/// Returns the view of a camera that turns by 0.8 degrees per frame while it walks.
 fn view(frame: usize) -> Result<ViewFrustum> {
     let turned = camera(0.8 * frame as f64 - 40.0, -4.0, 0.6, 30.0);
     let eye = DVec3::new(0.03 * frame as f64, 1.7, -0.02 * frame as f64);
     Ok(PerspectiveCamera { eye, ..turned }.frustum()?)
 }
 
-/// One map a frame.
+/// Returns one map per frame.
 fn maps(views: &[ViewFrustum], fit: FitSettings, stabilise: Stabilise) -> Result<Vec<LightProjection>> {
     let technique = one_map(fit);
     let technique = technique.with_maps(technique.maps.with_stabilise(stabilise));
@@ -66,7 +66,8 @@ fn maps(views: &[ViewFrustum], fit: FitSettings, stabilise: Stabilise) -> Result
     views.iter().map(fit).collect()
 }
 
-/// Runs of frames whose texels keep their size and direction: the first frame, and the one after the last.
+/// Returns runs of frames with constant texel size and direction, each as its first frame and the frame after
+/// its last.
 fn runs(maps: &[LightProjection]) -> Vec<[usize; 2]> {
     let texels = |fit: &LightProjection| (fit.texel_size, fit.light_from_world.x_axis, fit.light_from_world.y_axis);
     let runs = maps.chunk_by(|a, b| texels(a) == texels(b));
@@ -78,7 +79,8 @@ fn runs(maps: &[LightProjection]) -> Vec<[usize; 2]> {
     .collect()
 }
 
-/// What a figure is of all maps, frame by frame, with its name, its place on the page and the ends of its axis.
+/// Plots a figure of all maps, frame by frame, with its name, its position on the page and the ends of its
+/// axis.
 fn plot(
     canvas: &mut Canvas,
     (name, top, [low, high]): (&str, f64, [f64; 2]),

@@ -1,4 +1,4 @@
-//! What the pictures show: cameras, boxes, their maps, and how they look from the light.
+//! The content of the pictures: cameras, boxes, their maps, and views along the light.
 
 use anyhow::Result;
 use shadowfit::glam::{DVec2, DVec3, UVec2, Vec3, Vec4};
@@ -10,13 +10,14 @@ use shadowfit::{
 
 use super::canvas::{Canvas, Frame, GREY, Paint, stroke};
 
-/// Size of the camera's picture where it matters, in pixels.
+/// Size of the camera's picture for computations in pixels.
 pub(super) const PICTURE: UVec2 = UVec2::new(1920, 1080);
 
-/// Most boxes that a picture hands to a fit.
+/// Greatest number of boxes that a picture passes to a fit.
 const MOST_BOXES: usize = 16;
 
-/// A camera at a man's height that looks along a heading (degrees from -z toward +x) and down or up by a pitch.
+/// Returns a camera at eye height with a heading (degrees from -z toward +x) and a pitch (degrees, up is
+/// positive).
 pub(super) fn camera(heading: f64, pitch: f64, fov_y: f32, far: f32) -> PerspectiveCamera {
     let (sin, cos) = libm::sincos(heading.to_radians());
     let (rise, level) = libm::sincos(pitch.to_radians());
@@ -25,18 +26,19 @@ pub(super) fn camera(heading: f64, pitch: f64, fov_y: f32, far: f32) -> Perspect
     PerspectiveCamera { eye, forward, up: Vec3::Y, fov_y, aspect: 16.0 / 9.0, near: 0.5, far }
 }
 
-/// A fit with nothing beside it, near plane by extension: what the pictures show the parts of a fit on.
+/// Returns a fit without a border, whose near plane comes from the caster extension. The pictures show single
+/// parts of it.
 pub(super) fn plain_fit(kind: FitKind) -> FitSettings {
     FitSettings::default().with_kind(kind).with_max_distance(40.0).with_casters(CasterPolicy::Extend).with_border(0.0)
 }
 
-/// One map of such a fit, made for each frame by itself.
+/// Returns a technique with one map of such a fit, fitted afresh in each frame.
 pub(super) fn one_map(fit: FitSettings) -> Technique {
     let map = SingleMap { shape: fit.shape, stabilise: Stabilise::Off };
     Technique::default().with_maps(map).with_fit(fit.map)
 }
 
-/// Fits frames one after the other, with a memory of their own.
+/// Fits consecutive frames. It owns the fitter's state and storage.
 pub(super) struct Fitter {
     fitter: FitState,
     storage: Vec<DVec2>,
@@ -52,7 +54,7 @@ impl Fitter {
     }
 }
 
-/// A parallel view of the world: the axes that point right and up on the page, from an origin.
+/// A parallel projection of the world: origin, and the axes that point right and up on the page.
 #[derive(Clone, Copy)]
 pub(super) struct Look {
     pub(super) origin: DVec3,
@@ -61,19 +63,19 @@ pub(super) struct Look {
 }
 
 impl Look {
-    /// What the light sees: the map's right and up.
+    /// Returns the view from the light, with the map's right and up axes.
     pub(super) fn from_light(fit: &LightProjection) -> Self {
         let rows = fit.light_from_world.transpose();
         let [right, up] = [rows.x_axis, rows.y_axis].map(|row: Vec4| row.truncate().as_dvec3());
         Self { origin: fit.origin, right, up }
     }
 
-    /// A point relative to the origin.
+    /// Returns the page position of a point that is relative to the origin.
     pub(super) fn relative(&self, p: DVec3) -> DVec2 {
         DVec2::new(self.right.dot(p), self.up.dot(p))
     }
 
-    /// Points relative to an origin of their own.
+    /// Returns the page positions of points with their own origin.
     fn points<const N: usize>(&self, points: [Vec3; N], origin: DVec3) -> [DVec2; N] {
         points.map(|point| self.relative(point.as_dvec3() + origin - self.origin))
     }
@@ -86,29 +88,29 @@ impl Look {
         self.points(aabb.corners(), DVec3::ZERO)
     }
 
-    /// The map's rectangle, from a look along the light.
+    /// Returns the map's rectangle. This view must look along the light.
     pub(super) fn map(&self, fit: &LightProjection) -> [DVec2; 4] {
         let [a, b, c, d, ..] = fit.corners();
         self.points([a, b, c, d], fit.origin)
     }
 }
 
-/// Corners of each face of a frustum or a box.
+/// Corner indices of each face of a frustum or a box.
 const FACES: [[usize; 4]; 6] = [[0, 1, 2, 3], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]];
 
-/// Draws a body by its faces: each place of it is covered by two of them.
+/// Draws a convex body by its faces. Two faces cover each point of it.
 fn draw_body(canvas: &mut Canvas, frame: &Frame, corners: &[DVec2; 8], paint: Paint) {
     for face in FACES {
         canvas.polygon(face.map(|corner| frame.at(corners[corner])), paint);
     }
 }
 
-/// Draws a view frustum as all pictures do.
+/// Draws a view frustum in the style of all pictures.
 pub(super) fn draw_frustum(canvas: &mut Canvas, frame: &Frame, corners: &[DVec2; 8]) {
     draw_body(canvas, frame, corners, stroke("#b08d2a", 0.8).filled("#f4e3b2", 0.5));
 }
 
-/// Draws a box of the scene as all pictures do.
+/// Draws a box of the scene in the style of all pictures.
 pub(super) fn draw_box(canvas: &mut Canvas, frame: &Frame, corners: &[DVec2; 8]) {
     draw_body(canvas, frame, corners, stroke(GREY, 0.7).filled(GREY, 0.13));
 }
@@ -117,16 +119,16 @@ pub(super) fn draw_box(canvas: &mut Canvas, frame: &Frame, corners: &[DVec2; 8])
 pub(super) struct Visible {
     /// Position relative to the eye.
     pub(super) point: Vec3,
-    /// Of the surface, on the side of the eye.
+    /// Normal of the surface, on the side of the eye.
     pub(super) normal: Vec3,
     /// View depth, in metres.
     pub(super) depth: f64,
-    /// How far the point moves on its surface from one pixel of [`PICTURE`] to the next.
+    /// Movement of the point on its surface from one pixel of [`PICTURE`] to the next.
     pub(super) right: Vec3,
     pub(super) down: Vec3,
 }
 
-/// What a camera sees of boxes, by rays through places in its picture, from 0 to 1 across and down.
+/// Returns the visible points of boxes, by rays through positions in the picture (0 to 1, across and down).
 pub(super) fn visible(
     camera: &PerspectiveCamera,
     boxes: &[Aabb],
@@ -150,7 +152,7 @@ pub(super) fn visible(
     Ok(places.filter_map(see).collect())
 }
 
-/// Share of a ray at which it meets a box, and the face's normal.
+/// Returns the share of a ray at which it hits a box, and the normal of the face.
 fn hit(eye: DVec3, ray: DVec3, aabb: &Aabb) -> Option<(f64, DVec3)> {
     let (mut enter, mut leave, mut face) = (0.0_f64, f64::MAX, DVec3::ZERO);
     for axis in 0..3 {

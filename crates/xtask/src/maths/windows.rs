@@ -1,4 +1,5 @@
-//! Windows: what a street's visible points ask for, and where the four windows of `windows-4` stand.
+//! Draws windows: the texel sizes that a street's visible points need, and the positions of the four windows
+//! of `windows-4`.
 
 use anyhow::Result;
 use shadowfit::demand::{CELLS, DemandGrid, DemandSpace, SIDE};
@@ -8,13 +9,13 @@ use shadowfit::{Aabb, Boxes, FitInput, FittedMaps, PerspectiveCamera, Technique}
 use super::canvas::{Canvas, Frame, INK, MAPS, RIGHT, fill, stroke};
 use super::scene::{self, Fitter, Look, Visible, draw_box, visible};
 
-/// Where the sun travels.
+/// Direction of travel of the sunlight.
 const LIGHT: Vec3 = Vec3::new(0.25, -0.72, -0.42);
 
-/// Rays through the picture.
+/// Number of rays through the picture.
 const RAYS: u32 = 6000;
 
-/// Frames that the camera stands still before it is looked at, so that the sizes have been searched.
+/// Number of frames without movement before the picture, so that the search for window sizes has finished.
 const STILL: usize = 60;
 
 /// A street with houses on both sides and a square at its end.
@@ -32,10 +33,10 @@ const STREET: [Aabb; 11] = [
     Aabb::new(Vec3::new(-3.4, 0.0, -12.0), Vec3::new(-2.0, 2.2, -11.0)),
 ];
 
-/// Colours of the octaves of texels, the finest first.
+/// Colours of the octaves of texel sizes, the finest first.
 const OCTAVES: [&str; 6] = ["#4a0010", "#b5131b", "#ef5a1f", "#fb9d3f", "#f3c35f", "#cfc29a"];
 
-/// Least texel of the finest octave that has its own colour, in metres.
+/// Texel size of the finest octave with its own colour, in metres.
 const FINEST: f32 = 1.0 / 512.0;
 
 pub(super) fn draw() -> Result<String> {
@@ -44,10 +45,10 @@ pub(super) fn draw() -> Result<String> {
         walk.step(0.0)?;
     }
     let shown = walk.step(0.0)?;
-    let mut canvas = Canvas::new(456.0, "What a street's visible points ask for, and four windows over them");
+    let mut canvas = Canvas::new(456.0, "Texel sizes that a street's visible points need, and four windows");
     let look = shown.look();
     for (left, count, title) in
-        [(20.0, 4, "The four windows, as the light sees them"), (376.0, 3, "The three finest, enlarged")]
+        [(20.0, 4, "The four windows, seen from the light"), (376.0, 3, "The three finest, enlarged")]
     {
         let (low, size) = (DVec2::new(left, 38.0), DVec2::splat(324.0));
         let windows = shown.maps[..count].iter().flat_map(|map| look.map(&map.projection));
@@ -58,7 +59,7 @@ pub(super) fn draw() -> Result<String> {
     Ok(canvas.finish())
 }
 
-/// What is visible, and the windows over it.
+/// Draws the visible points and the windows.
 fn panel(canvas: &mut Canvas, shown: &Step, look: &Look, frame: &Frame) {
     street(canvas, look, frame);
     for (i, colour) in OCTAVES.into_iter().enumerate().rev() {
@@ -68,19 +69,19 @@ fn panel(canvas: &mut Canvas, shown: &Step, look: &Look, frame: &Frame) {
     shown.outline(canvas, look, frame, 3.0);
 }
 
-/// The street without its ground.
+/// Draws the street without its ground.
 pub(super) fn street(canvas: &mut Canvas, look: &Look, frame: &Frame) {
     for aabb in &STREET[1..] {
         draw_box(canvas, frame, &look.aabb(aabb));
     }
 }
 
-/// Where the camera is.
+/// Draws the position of the camera.
 fn eye(canvas: &mut Canvas, at: DVec2) {
     canvas.circle(at, 4.5, stroke(INK, 1.5).filled("#ffffff", 1.0));
 }
 
-/// The colours of the points and of the windows.
+/// Draws the legend: colours of the points and of the windows.
 fn legend(canvas: &mut Canvas, shown: &Step) {
     canvas.text(DVec2::new(20.0, 396.0), RIGHT, INK, "Points need texels of, in mm");
     for (i, colour) in OCTAVES.into_iter().enumerate() {
@@ -99,13 +100,13 @@ fn legend(canvas: &mut Canvas, shown: &Step) {
     canvas.text(DVec2::new(646.0, 430.0), RIGHT, INK, "eye");
 }
 
-/// Evenly spread places in a picture (the additive sequence of M. Roberts, "The unreasonable effectiveness of
-/// quasirandom sequences", 2018).
+/// Returns evenly spread positions in a picture (the additive sequence of M. Roberts, "The unreasonable
+/// effectiveness of quasirandom sequences", 2018).
 fn place(i: u32) -> DVec2 {
     (DVec2::new(0.754_877_666_246_692_7, 0.569_840_290_998_053_2) * f64::from(i) + 0.5).fract()
 }
 
-/// A frame: its maps, and what was seen in it.
+/// A frame: its maps and its visible points.
 pub(super) struct Step {
     pub(super) camera: PerspectiveCamera,
     pub(super) maps: FittedMaps,
@@ -114,14 +115,14 @@ pub(super) struct Step {
 }
 
 impl Step {
-    /// Colour of the texels that a point asks for; `None` where it does not count.
+    /// Returns the octave of the texel size that a point needs, or `None` for a point that does not count.
     pub(super) fn octave(&self, seen: &Visible) -> Option<usize> {
         let cell = self.space.index(seen.point, seen.normal, seen.right, seen.down)?;
         let texel = self.space.texel * (1 << (cell / (SIDE * SIDE))) as f32;
         Some((libm::log2f(texel / FINEST).round().max(0.0) as usize).min(OCTAVES.len() - 1))
     }
 
-    /// Draws the outlines of the maps, and the eye.
+    /// Draws the outlines of the maps and the eye.
     pub(super) fn outline(&self, canvas: &mut Canvas, look: &Look, frame: &Frame, width: f64) {
         for (map, colour) in self.maps.iter().zip(MAPS).rev() {
             canvas.polygon(look.map(&map.projection).map(|p| frame.at(p)), stroke(colour, width));
@@ -129,17 +130,17 @@ impl Step {
         eye(canvas, frame.at(look.relative(DVec3::ZERO)));
     }
 
-    /// The plane across the light in which windows are squares.
+    /// Returns a view along the light, in whose plane windows are squares.
     pub(super) fn look(&self) -> Look {
         Look { origin: self.space.origin, right: self.space.x.as_dvec3(), up: self.space.y.as_dvec3() }
     }
 }
 
-/// Frames one after the other, each fitted with what the one before it showed.
+/// Consecutive frames, each fitted with the visible demand of the previous one.
 pub(super) struct Walk {
     technique: Technique,
     fitter: Fitter,
-    /// The points that the last frame showed, and the space that they were counted in.
+    /// Visible demand of the last frame: the space of its cells and their counts.
     demand: Option<(DemandSpace, Vec<u32>)>,
 }
 
@@ -148,7 +149,7 @@ impl Walk {
         Self { technique: *technique, fitter: Fitter::new(), demand: None }
     }
 
-    /// The next frame, with the camera at a heading in degrees from -z toward +x.
+    /// Computes the next frame, with the camera at a heading in degrees from -z toward +x.
     pub(super) fn step(&mut self, heading: f64) -> Result<Step> {
         let camera = PerspectiveCamera { near: 0.1, ..scene::camera(heading, -4.0, 0.8, 120.0) };
         let view = [camera.frustum()?];

@@ -1,4 +1,5 @@
-//! A turning camera: windows beside cascades that are as sharp, and beside cascades that stand as still.
+//! Draws windows for a turning camera, next to cascades of equal sharpness and next to cascades of equal
+//! stability.
 
 use anyhow::{Context, Result};
 use shadowfit::diagnostics::pixels_per_texel;
@@ -10,23 +11,23 @@ use super::canvas::{Canvas, Frame, INK, LEFT, RED, RIGHT};
 use super::scene::PICTURE;
 use super::windows::{Step, Walk, street};
 
-/// Frames of the turn, after as many that the camera stands still.
+/// Number of frames of the turn. It follows an equal number of frames without movement.
 const FRAMES: usize = 60;
 
-/// Frames from one that is drawn to the next.
+/// Interval between drawn frames.
 const DRAWN: usize = 30;
 
-/// Turn of the camera from frame to frame, in degrees.
+/// Turn of the camera per frame, in degrees.
 const TURN: f64 = 0.25;
 
-/// Side of a panel in pixels.
+/// Side of a panel, in pixels.
 const SIDE: f64 = 216.0;
 
-/// Metres up to which the panels show the plane.
+/// Extent of the plane in the panels, in metres.
 const REACH: f64 = 52.0;
 
 pub(super) fn draw() -> Result<String> {
-    let mut canvas = Canvas::new(388.0, "A turning camera's windows, and cascades that are as sharp or stand as still");
+    let mut canvas = Canvas::new(388.0, "A turning camera: windows, equally sharp cascades, equally stable cascades");
     for (i, preset) in ["windows-4", "focused-4", "stable-4"].into_iter().enumerate() {
         let technique = Technique::preset(preset).context("no such preset")?;
         let steps = turn(&technique)?;
@@ -46,14 +47,14 @@ pub(super) fn draw() -> Result<String> {
     Ok(canvas.finish())
 }
 
-/// The frames of the turn.
+/// Returns the frames of the turn.
 fn turn(technique: &Technique) -> Result<Vec<Step>> {
     let mut walk = Walk::new(technique);
     let heading = |frame: usize| TURN * (frame.saturating_sub(FRAMES) as f64 - FRAMES as f64 * 0.5);
     (0..=2 * FRAMES).map(|frame| walk.step(heading(frame))).skip(FRAMES).collect()
 }
 
-/// What became of the maps from frame to frame, and how sharp they are.
+/// Draws the changes of the maps from frame to frame, and their sharpness.
 fn figures(canvas: &mut Canvas, technique: &Technique, steps: &[Step], corner: DVec2) -> Result<()> {
     let pairs = steps.windows(2).flat_map(|pair| pair[0].maps.iter().zip(pair[1].maps.iter()));
     let scrolls: Vec<Scroll> = pairs.map(|(before, now)| Scroll::between(before, now)).collect();
@@ -61,7 +62,7 @@ fn figures(canvas: &mut Canvas, technique: &Technique, steps: &[Step], corner: D
     let lines = [
         (scrolls.iter().filter(is_still).count(), "stay where they are"),
         (scrolls.iter().filter(|scroll| !scroll.is_new && scroll.shift != IVec2::ZERO).count(), "move by whole texels"),
-        (scrolls.iter().filter(|scroll| scroll.is_new).count(), "have other texels"),
+        (scrolls.iter().filter(|scroll| scroll.is_new).count(), "have new texels"),
     ];
     for (i, (count, what)) in lines.into_iter().enumerate() {
         let at = corner + DVec2::new(44.0, 24.0 + 22.0 * i as f64);
@@ -75,7 +76,7 @@ fn figures(canvas: &mut Canvas, technique: &Technique, steps: &[Step], corner: D
     Ok(())
 }
 
-/// The mean of pixels per texel over the points of the frames that are drawn.
+/// Returns the mean of pixels per texel over the points of the drawn frames.
 fn mean(technique: &Technique, steps: &[Step]) -> Result<f64> {
     let mut pixels: Vec<f64> = Vec::new();
     for step in steps.iter().step_by(DRAWN) {

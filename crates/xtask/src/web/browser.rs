@@ -11,13 +11,14 @@ use crate::machine::{BROWSERS, Machine};
 use crate::process::{self, target_folder};
 use crate::setup::{self, Purpose};
 
-/// Size of the window whose pictures the page's are compared with, in pixels: that of `page.test.mjs`.
+/// Size of the window for comparing its pictures with the page's, in pixels. `page.test.mjs` uses the same
+/// size.
 const SIZE: &str = "720x300";
 
-/// Builds the page with little optimisation, and tests it; `is_long` for ten minutes of random actions.
+/// Builds the page with little optimisation and tests it. `is_long` adds ten minutes of random actions.
 ///
 /// # Errors
-/// When something is missing or a test fails.
+/// If a program is missing or a test fails.
 pub(crate) fn test(is_long: bool) -> Result<()> {
     let machine = setup::prepare(Purpose::Page)?;
     if !machine.can_test_page() {
@@ -34,7 +35,7 @@ pub(crate) fn test(is_long: bool) -> Result<()> {
     process::run(Command::new("npm").args(["install", "--no-audit", "--no-fund", "--silent"]).current_dir(&modules))?;
     let address = serve_beside(page);
     let mut node = Command::new("node");
-    // Without `--test`, which starts another program: the one here ends its browser when it is ended.
+    // Without `--test`, which starts another process: this one ends its browser when it is ended.
     node.args(["--test-reporter=spec", "page.test.mjs"]).current_dir(&modules);
     node.env("PAGE", address).env("NATIVE", &native).env("BROWSER", browser()?);
     node.env("ASSETS", process::root().join("../shared/assets"));
@@ -44,9 +45,9 @@ pub(crate) fn test(is_long: bool) -> Result<()> {
     process::run(&mut node)
 }
 
-/// Plays a script in the viewer of this machine, with the software driver, and keeps the files that it saves.
+/// Plays a script in the native viewer with the software driver. The files that it saves stay in `folder`.
 fn play(machine: &Machine, script: &Path, folder: &Path) -> Result<()> {
-    // The same program that the tests of the workspace start, with the same features.
+    // Use the program and features of the workspace's tests, so that it is built once.
     let mut compiler = process::cargo("build");
     process::run(compiler.args(["--workspace", "--example", "viewer"]).args(setup::features(machine)))?;
     let program = format!("debug/examples/viewer{}", std::env::consts::EXE_SUFFIX);
@@ -56,9 +57,9 @@ fn play(machine: &Machine, script: &Path, folder: &Path) -> Result<()> {
     process::run(process::with_driver_for_tests(&mut viewer))
 }
 
-/// Copies the files of a folder, so that what npm installs lies elsewhere.
+/// Copies the files of a folder, so that npm does not install into the sources.
 fn copy(from: &Path, to: &Path) -> Result<()> {
-    fs::create_dir_all(to).with_context(|| format!("cannot make {}", to.display()))?;
+    fs::create_dir_all(to).with_context(|| format!("cannot create {}", to.display()))?;
     for entry in fs::read_dir(from)? {
         let file = entry?.path();
         if file.is_file() {
@@ -68,7 +69,7 @@ fn copy(from: &Path, to: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Serves a folder on a thread that ends with the process, and returns its address.
+/// Serves a folder on a thread that ends with the process. Returns its address.
 fn serve_beside(folder: std::path::PathBuf) -> String {
     let (sender, address) = std::sync::mpsc::channel();
     thread::spawn(move || {
@@ -83,7 +84,7 @@ fn serve_beside(folder: std::path::PathBuf) -> String {
     address.recv().unwrap_or_default()
 }
 
-/// The browser that is there.
+/// Returns the path of the installed browser.
 fn browser() -> Result<String> {
     let path = std::env::var_os("PATH").unwrap_or_default();
     let found = std::env::split_paths(&path)

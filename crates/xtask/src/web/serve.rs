@@ -1,4 +1,4 @@
-//! A server of static files for this machine.
+//! A server of static files for local use.
 
 use std::fs::File;
 use std::path::{Component, Path, PathBuf};
@@ -6,10 +6,10 @@ use std::path::{Component, Path, PathBuf};
 use anyhow::{Result, anyhow};
 use tiny_http::{Header, Response, Server};
 
-/// Serves a folder until the process ends, and calls `started` with the address.
+/// Serves a folder until the process ends. Calls `started` with the address.
 ///
 /// # Errors
-/// When the port is taken.
+/// If the port is taken.
 pub(super) fn serve(folder: &Path, port: u16, started: impl FnOnce(&str)) -> Result<()> {
     let server = Server::http(("127.0.0.1", port)).map_err(|error| anyhow!("port {port}: {error}"))?;
     let port = server.server_addr().to_ip().map_or(port, |address| address.port());
@@ -17,7 +17,7 @@ pub(super) fn serve(folder: &Path, port: u16, started: impl FnOnce(&str)) -> Res
     for request in server.incoming_requests() {
         let file = file_of(request.url()).map(|path| folder.join(path));
         let found = file.and_then(|path| Some((File::open(&path).ok()?, mime_type(&path))));
-        // Whoever went away does not need the answer.
+        // Ignore errors of clients that have disconnected.
         let _ = match found {
             Some((file, mime_type)) => request.respond(Response::from_file(file).with_header(header(mime_type))),
             None => request.respond(Response::from_string("not found").with_status_code(404)),
@@ -26,14 +26,14 @@ pub(super) fn serve(folder: &Path, port: u16, started: impl FnOnce(&str)) -> Res
     Ok(())
 }
 
-/// The file of an address, relative to the folder; `None` for one that leads out of it.
+/// Returns the file of an address, relative to the folder, or `None` if it is outside the folder.
 fn file_of(url: &str) -> Option<PathBuf> {
     let path = url.split(['?', '#']).next()?.trim_start_matches('/');
     let path = Path::new(if path.is_empty() { "index.html" } else { path });
     path.components().all(|part| matches!(part, Component::Normal(_))).then(|| path.to_owned())
 }
 
-/// What browsers are told that a file is: they compile modules while they load only if that is right.
+/// Returns the MIME type of a file. Browsers compile WebAssembly while it loads only if the type is right.
 fn mime_type(file: &Path) -> &'static str {
     match file.extension().and_then(|extension| extension.to_str()) {
         Some("html") => "text/html; charset=utf-8",

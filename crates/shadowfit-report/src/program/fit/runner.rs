@@ -16,10 +16,10 @@ use shadowfit_report::peers::{FitFile, FitFrame, FitMap, Frame, Scenarios, Scene
 use shadowfit_study::{NamedTechnique, see_by_rays};
 use shadowfit_truth::Tracer;
 
-/// How often all frames are fitted while the time is measured, after once to warm up.
+/// Number of timed passes over all frames, after one pass for warm-up.
 const BATCHES: usize = 7;
 
-/// What is known of a scene.
+/// Data of a scene for its fits.
 struct Known {
     boxes: Vec<Aabb>,
     /// Cones around the normals in the boxes, if known.
@@ -27,24 +27,24 @@ struct Known {
     tracer: Option<Tracer>,
 }
 
-/// A frame ready to be fitted.
+/// A frame, ready to be fitted.
 struct Prepared {
     view: ViewFrustum,
     direction: Vec3,
     scene: usize,
-    /// Whether the fitter has to forget what was before.
+    /// Whether the fitter must forget the previous frames.
     is_first: bool,
-    /// What the technique is told of the frame before.
+    /// Visible demand of the previous frame, as input of the fit.
     seen: Option<VisibleDemand>,
 }
 
-/// How long fits took, in nanoseconds: each frame's fastest batch.
+/// Times of fits, in nanoseconds. Each frame counts with its fastest batch.
 pub(crate) struct Times {
-    /// Median over frames that begin no path.
+    /// Median over frames that do not begin a path.
     pub(crate) median: f64,
-    /// The slowest of them.
+    /// Slowest frame that does not begin a path.
     pub(crate) slowest: f64,
-    /// The slowest frame that begins a path.
+    /// Slowest frame that begins a path.
     pub(crate) first: f64,
 }
 
@@ -105,7 +105,7 @@ fn know(scene: &Scene, named: &NamedTechnique, source: Option<&Source>) -> Resul
     Ok(Known { boxes, cones, tracer: tracer.map(|objects| Tracer::new(objects.into_iter().flatten())) })
 }
 
-/// A box rounded to f32 so that it loses nothing.
+/// Returns a box rounded outward to f32.
 fn outward(bounds: &[f64; 6]) -> Aabb {
     let [a, b, c, d, e, f] = *bounds;
     let down = |v: f64| if f64::from(v as f32) > v { (v as f32).next_down() } else { v as f32 };
@@ -131,7 +131,7 @@ fn prepare(scenarios: &Scenarios, index: usize, known: &[Known], technique: &Tec
     })
 }
 
-/// The maps of all frames, and the nanoseconds that each took.
+/// Fits all frames. Returns the maps and the nanoseconds of each frame.
 fn fit_all(frames: &[Prepared], known: &[Known], technique: &Technique) -> Result<Vec<(FittedMaps, f64)>> {
     let mut fitter = ShadowFitter::new(technique);
     frames
@@ -159,8 +159,9 @@ fn fit_all(frames: &[Prepared], known: &[Known], technique: &Technique) -> Resul
         .collect()
 }
 
-/// The maps of a frame as the fit file has them, in the order in which points try them: that of their ends, or by
-/// coverage from the finest on, without ends and without those that are empty.
+/// Returns the maps of a frame in the form of fit files, in the order in which points try them. If maps are
+/// selected by view depth, this is the order of their ends. If they are selected by coverage, the finest map
+/// comes first, maps have no end, and empty maps are left out.
 fn fit_maps(maps: &FittedMaps, technique: &Technique) -> Vec<FitMap> {
     let choice = technique.maps.selection();
     let fits = maps.iter().map(|map| &map.projection);
@@ -172,7 +173,7 @@ fn fit_maps(maps: &FittedMaps, technique: &Technique) -> Vec<FitMap> {
     }
 }
 
-/// Returns a map as fit files have it: with the f32 matrix that the renderer gets, made absolute in f64.
+/// Returns a map in the form of fit files: the f32 matrix of the renderer, made absolute in f64.
 fn fit_map(map: &FittedMap) -> FitMap {
     let projection = &map.projection;
     let clip_from_world = projection.clip_from_world.as_dmat4() * DMat4::from_translation(-projection.origin);

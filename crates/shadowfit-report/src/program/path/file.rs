@@ -1,7 +1,7 @@
 //! Files of camera paths, TOML or JSON by their extension.
 //!
-//! A file holds a few keys, between which frames are interpolated. Whatever is wrong with one is
-//! told by file, element and reason, since people write them by hand.
+//! A file holds a few keys, and frames are interpolated between them. People write these files by hand, so
+//! errors name file, element and reason.
 
 use std::fmt::Display;
 use std::fs;
@@ -16,13 +16,13 @@ use shadowfit_params::tool::LightSettings;
 
 use super::{CameraPath, PathFrame};
 
-/// Frames of a path; more than anybody waits for, so a number beyond it is a slip.
+/// Greatest number of frames of a path. Rendering more would take too long, so a larger number is a mistake.
 const MAX_FRAMES: u64 = 100_000;
-/// Vertical field of view, in degrees: narrower than a telescope or wider than flat pictures bear is a slip.
+/// Range of the vertical field of view, in degrees. Values outside are mistakes.
 const FOV_RANGE: std::ops::RangeInclusive<f64> = 0.1..=179.5;
-/// Decimals of an angle that always give the same f32 back.
+/// Number of decimals of an angle that is enough to restore every f32.
 const MAX_DECIMALS: i32 = 12;
-/// Group of keys that name none.
+/// Group of keys without a group.
 const DEFAULT_GROUP: &str = "path";
 
 /// The content of a file.
@@ -44,23 +44,23 @@ struct PathFile {
     up: Option<[f32; 3]>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     light: Option<FileLight>,
-    /// Frames for each step from key to key.
+    /// Number of frames from one key to the next.
     #[serde(default = "one")]
     frames_per_key: u64,
     keys: Vec<Key>,
 }
 
-/// The sun, by the direction toward it, in degrees.
+/// The sun, as the direction toward it, in degrees.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct FileLight {
-    /// From +z toward +x.
+    /// Azimuth from +z toward +x.
     azimuth_deg: f64,
-    /// Above the horizon.
+    /// Elevation above the horizon.
     elevation_deg: f64,
 }
 
-/// A camera; one of `target` and `forward` is there.
+/// A camera. It has either `target` or `forward`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Key {
@@ -73,7 +73,7 @@ struct Key {
     target: Option<[f64; 3]>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     forward: Option<[f32; 3]>,
-    /// Direction that appears upward, instead of the file's.
+    /// Direction that appears upward, in place of the file's.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     up: Option<[f32; 3]>,
 }
@@ -82,7 +82,7 @@ struct Key {
 struct View {
     eye: DVec3,
     forward: Vec3,
-    /// Unless it is the file's.
+    /// Direction that appears upward, if it differs from the file's.
     up: Option<Vec3>,
     group: String,
 }
@@ -102,12 +102,12 @@ fn one() -> u64 {
 }
 
 impl CameraPath {
-    /// Reads a path for pictures of `aspect` (width divided by height). Between keys of a group, positions are
-    /// interpolated linearly and directions along the arc.
+    /// Reads a path for pictures of `aspect` (width divided by height). Between keys of a group, positions
+    /// are interpolated linearly and directions along the arc.
     ///
     /// # Errors
     ///
-    /// When the file cannot be read, is not of this format, or an element makes no sense.
+    /// If the file cannot be read, does not have this format, or contains an impossible value.
     pub(crate) fn read(file: &Path, aspect: f32) -> Result<Self> {
         let read = || {
             let format = Format::of(file)?;
@@ -117,12 +117,21 @@ impl CameraPath {
         read().with_context(|| format!("{}: not a camera path", file.display()))
     }
 
-    /// The text of a file that [`Self::read`] reads back without loss, a key for each frame. Extension and content
-    /// agree: JSON for `json`, else TOML.
+    /// Parses TOML, as [`Self::read`] does.
     ///
     /// # Errors
     ///
-    /// When the path is empty, or its frames differ in lens, for which a file has one place only.
+    /// As [`Self::read`].
+    pub(crate) fn from_toml(text: &str, aspect: f32) -> Result<Self> {
+        Self::parse(text, Format::Toml, aspect)
+    }
+
+    /// Returns the text of a file that [`Self::read`] reads back without loss, with a key for each frame. It
+    /// is JSON if the extension of `file` is `json`, else TOML.
+    ///
+    /// # Errors
+    ///
+    /// If the path is empty, or its frames differ in their lens, which a file stores only once.
     pub(crate) fn to_text(&self, file: &Path) -> Result<String> {
         let content = self.content()?;
         match Format::of(file)? {
@@ -177,7 +186,7 @@ impl Format {
         }
     }
 
-    /// Parses text; the first part of an error is the path of the element, such as `keys[3].eye`.
+    /// Parses text. Errors begin with the path of the element, such as `keys[3].eye`.
     fn parse<T: DeserializeOwned>(self, text: &str) -> Result<T> {
         match self {
             Self::Toml => {
@@ -197,22 +206,22 @@ impl Format {
     }
 }
 
-/// An error for people from the place that serde stopped at.
+/// Returns a readable error for the position at which serde stopped.
 fn refused(path: &serde_path_to_error::Path, reason: impl Display, line: &str) -> anyhow::Error {
     let path = path.to_string();
-    // The whole is "." or, where nothing was read, "?".
+    // serde's path of the whole file is "." or, if nothing was read, "?".
     let element = if matches!(path.as_str(), "." | "?") { "file" } else { &path };
     anyhow!("{element}{line}: {reason}")
 }
 
-/// Where in the text an error was met, such as ` (line 4)`.
+/// Returns the position of an error in the text, such as ` (line 4)`.
 fn line(text: &str, error: &toml::de::Error) -> String {
     let before = error.span().and_then(|span| text.get(..span.start));
     before.map_or_else(String::new, |before| format!(" (line {})", before.matches('\n').count() + 1))
 }
 
 impl PathFile {
-    /// A camera at the origin with this file's lens.
+    /// Returns a camera at the origin with this file's lens.
     fn lens(&self, aspect: f32) -> Result<Camera> {
         let fov = self.fov_y_deg;
         ensure!(
@@ -250,12 +259,10 @@ impl PathFile {
             let steps = if next.is_some() { self.frames_per_key } else { 1 };
             for step in 0..steps {
                 let (eye, forward) = between(view, next.unwrap_or(view), step as f64 / steps as f64);
-                // The key's own up stays until the next key.
+                // The key's own up applies until the next key.
                 let camera = Camera { eye, forward, up: view.up.unwrap_or(lens.up), ..lens };
                 camera.frustum().map_err(|error| {
-                    anyhow!(
-                        "keys[{index}]: no camera can be made of it: {error}; where it looks along up, set another up"
-                    )
+                    anyhow!("keys[{index}]: it is not a valid camera: {error}; if it looks along up, set another up")
                 })?;
                 frames.push(PathFrame { camera, group: view.group.clone() });
             }
@@ -264,7 +271,7 @@ impl PathFile {
     }
 }
 
-/// Position and direction at a share of the way from a view to the next.
+/// Returns position and direction at a share of the way from a view to the next one.
 fn between(view: &View, next: &View, share: f64) -> (DVec3, Vec3) {
     if share == 0.0 {
         return (view.eye, view.forward);
@@ -291,13 +298,13 @@ fn view((index, key): (usize, &Key)) -> Result<View> {
     Ok(View { eye, forward, up, group })
 }
 
-/// Unit direction from the eye to what it looks at.
+/// Returns the unit direction from the eye to its target.
 fn toward(eye: DVec3, target: DVec3) -> Result<Vec3> {
     if !target.is_finite() {
         bail!("{target} is not a position in metres");
     }
     if target == eye {
-        bail!("it is where the eye is, which leaves no direction to look in; move one of them");
+        bail!("it is where the eye is, so there is no viewing direction; move one of them");
     }
     let direction = (target - eye).try_normalize();
     Ok(direction.context("it is too near the eye, or too far from it, to give a direction")?.as_vec3())
@@ -317,7 +324,7 @@ fn radians(degrees: f64) -> f32 {
     degrees.to_radians() as f32
 }
 
-/// The shortest number of degrees that gives the same radians back.
+/// Returns the shortest number of degrees that converts back to the same radians.
 fn degrees(angle: f32) -> f64 {
     let exact = f64::from(angle).to_degrees();
     let rounded = |decimals: i32| {
@@ -327,15 +334,15 @@ fn degrees(angle: f32) -> f64 {
     (0..MAX_DECIMALS).map(rounded).find(|&short| radians(short) == angle).unwrap_or(exact)
 }
 
-/// The f64 whose shortest text is that of the f32.
+/// Returns the f64 with the same shortest text as the f32.
 fn decimal(value: f32) -> f64 {
     value.to_string().parse().unwrap_or_else(|_| f64::from(value))
 }
 
-/// Reads what a fuzzer takes for a path: it is refused, or written so that it reads back the same, as TOML and as JSON.
+/// Fuzz target: a path that is accepted must read back equal after writing, as TOML and as JSON.
 #[cfg(any(test, fuzzing))]
 pub(crate) fn camera_path(data: &[u8]) {
-    /// Longer paths take long to write and tell nothing new.
+    /// Limit of the frames that are written. Longer paths only take more time.
     const MOST_FRAMES: usize = 1000;
     let Ok(text) = std::str::from_utf8(data) else { return };
     for format in [Format::Toml, Format::Json] {
@@ -477,7 +484,7 @@ forward = [0.0, 0.0, 2.0]
             ("eye = [2.0, 1.7, 5.0]", "", "keys[1] (line 10): missing field `eye`"),
             ("[2.0, 1.7, 5.0]", "[nan, 1.7, 5.0]", "keys[1].eye: [NaN, 1.7, 5] is not a position"),
             ("[1.0, 0.0, 0.0]", "[0.0, 0.0, 0.0]", "keys[1].forward: [0, 0, 0] is not a direction"),
-            ("[1.0, 0.0, 0.0]", "[0.0, 1.0, 0.0]", "keys[1]: no camera can be made of it"),
+            ("[1.0, 0.0, 0.0]", "[0.0, 1.0, 0.0]", "keys[1]: it is not a valid camera"),
             ("[2.0, 1.7, 5.0]", "[2.0, 1.7]", "keys[1].eye"),
             ("[2.0, 1.7, 5.0]", "\"here\"", "keys[1].eye (line 11): invalid type: string \"here\""),
             ("\"far\"", "\"\"", "keys[2].group: an empty name"),

@@ -1,7 +1,7 @@
 //! A path for a scene that comes without one: an orbit around it and a flight through it.
 //!
-//! Both follow the scene's bounds alone, so that a helmet and a landscape are served alike, and both are found with
-//! rays: no camera stands inside geometry, and a camera in the scene has most of its picture filled by it.
+//! The path depends only on the geometry, so that a helmet and a landscape both get a useful one. Rays ensure
+//! that no camera is inside geometry, and that geometry fills most of the picture of a camera in the scene.
 
 use anyhow::{Result, ensure};
 use glam::Vec3;
@@ -13,66 +13,66 @@ use super::probe::{Probe, is_a_point};
 use super::route::{Places, Route};
 use super::{CameraPath, PathFrame};
 
-/// Frames of the orbit and of the flight.
+/// Number of frames of the orbit, and of the flight.
 const FRAMES: usize = 16;
-/// Vertical field of view, in degrees: that of path files without one.
+/// Vertical field of view, in degrees. It is also the default of path files.
 const FOV: f32 = 60.0;
-/// Elevation of the orbit's eye, in degrees: high enough to see the ground between things.
+/// Elevation of the orbit's eye, in degrees: high enough to see the ground between objects.
 const ORBIT_ELEVATION: f32 = 22.0;
-/// Part of the picture's half that the scene may fill in the orbit.
+/// Share of half of the picture that the scene may fill in the orbit.
 const ORBIT_FILL: f32 = 0.95;
-/// Distance that cameras keep from triangles, as a share of the scene's radius.
+/// Minimum distance of cameras from triangles, as a share of the scene's radius.
 const CLEARANCE: f32 = 0.005;
-/// Share of the clearance that the near plane's corners lie at.
+/// Distance of the near plane's corners, as a share of the clearance.
 const NEAR_SHARE: f32 = 0.9;
-/// Room behind the farthest corner of the scene.
+/// Factor for the far plane beyond the farthest corner of the scene.
 const FAR_MARGIN: f32 = 1.02;
 /// Height of a person's eyes, in metres.
 const EYE_HEIGHT: f32 = 1.7;
-/// Bounds of the height of the eyes, as shares of the scene's radius: for scenes of another size than people's.
+/// Bounds of the eye height, as shares of the scene's radius: for scenes that are not of human scale.
 const HEIGHT_SHARES: [f32; 2] = [0.01, 0.4];
-/// Factors of the height that are tried: as it is, lower for models that are small beside it, and raised over rough
-/// ground.
+/// Factors of the eye height, in the order of trying: unchanged, lower for models that are small compared
+/// with it, and higher for rough ground.
 const RAISES: [f32; 5] = [1.0, 0.4, 2.0, 4.0, 8.0];
-/// Shares of the way that are tried where the whole does not serve.
+/// Shares of the route, in the order of trying, for routes that are not usable as a whole.
 const SHARES: [f32; 7] = [1.0, 0.85, 0.7, 0.55, 0.4, 0.28, 0.16];
-/// Angles below the horizon that the flight looks at, in degrees; the first that serves.
+/// View angles below the horizon for the flight, in degrees, in the order of trying.
 const PITCHES: [f32; 4] = [6.0, 14.0, 22.0, 32.0];
-/// Least share of a view's rays that meet the scene.
+/// Least share of a view's rays that hit the scene.
 const FILLED: f32 = 0.6;
-/// Least median distance of what a view meets, in clearances: less is a wall right before the camera.
+/// Least median distance of a view's hits, in clearances. A smaller one means a wall right before the camera.
 const ROOM: f32 = 10.0;
 /// Least length of a flight, as a share of the scene's radius.
 const LEAST_LENGTH: f32 = 0.1;
-/// Frames ahead that a camera looks: its turns begin before the way's.
+/// Number of frames that a camera looks ahead, so that it turns before its route does.
 const AHEAD: usize = 3;
-/// How often corners of the way are smoothed.
+/// Number of smoothing passes over the corners of a route.
 const SMOOTHINGS: usize = 6;
-/// Shifts that are tried where a place is too close to something, in clearances.
+/// Shifts of a position that is too close to a triangle, in clearances, in the order of trying.
 const SHIFTS: [f32; 4] = [1.0, 2.0, 4.0, 8.0];
 
-/// A path, and what to say about how it was found.
+/// A path, and notes on how it was found.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Found {
     pub(crate) path: CameraPath,
-    /// Whole sentences; none where nothing has to be said.
+    /// Notes in whole sentences. May be empty.
     pub(crate) notes: Vec<String>,
 }
 
-/// Finds an orbit and a flight for the scene of `tracer`, whose triangles are within `bounds` (world space, y up,
-/// metres), for pictures of `aspect`. The same scene gives the same path. Where no flight serves, there is the orbit
-/// alone, and a note.
+/// Finds an orbit and a flight for the scene of `tracer`, whose triangles are within `bounds` (world space, y
+/// up, metres), for pictures of `aspect`. The same scene gives the same path. If no flight is found, the path
+/// is the orbit alone, with a note.
 ///
 /// # Errors
 ///
-/// When the scene is empty, or its bounds have no size.
+/// If the scene is empty, or its bounds have no size.
 pub(crate) fn find(tracer: &Tracer, bounds: Aabb, aspect: f32) -> Result<Found> {
     let Aabb { min: low, max: high } = bounds;
-    ensure!(!tracer.is_empty(), "the scene has no triangles, so there is nothing to look at; give another scene");
+    ensure!(!tracer.is_empty(), "the scene has no triangles; give another scene");
     let radius = bounds.size().length() * 0.5;
     let sane = radius.is_finite() && radius > 0.0 && low.cmple(high).all();
-    ensure!(sane, "the scene reaches from {low} to {high}, which is no size to look at; give a camera path for it");
-    ensure!(aspect.is_finite() && aspect > 0.0, "pictures {aspect} times as wide as high cannot be looked at");
+    ensure!(sane, "the scene reaches from {low} to {high}, which is not a usable size; give a camera path for it");
+    ensure!(aspect.is_finite() && aspect > 0.0, "an aspect ratio of {aspect} is not possible");
     let probe = Probe::new(tracer, radius * CLEARANCE);
     let lens = lens(radius, aspect);
     let mut frames = frames("orbit", orbit(&probe, bounds, lens));
@@ -80,7 +80,7 @@ pub(crate) fn find(tracer: &Tracer, bounds: Aabb, aspect: f32) -> Result<Found> 
     match flight(&probe, bounds, lens) {
         Some(cameras) => frames.extend(self::frames("fly-through", cameras)),
         None => notes.push(
-            "No flight through the scene was found whose views are filled by it, so the path is the orbit alone; \
+            "No flight through the scene was found whose views are filled by geometry, so the path is the orbit alone; \
              write a camera path to look at the scene from inside."
                 .to_owned(),
         ),
@@ -100,7 +100,8 @@ fn frames(group: &str, cameras: Vec<PerspectiveCamera>) -> Vec<PathFrame> {
     cameras.into_iter().map(|camera| PathFrame { camera: camera.into(), group: group.to_owned() }).collect()
 }
 
-/// A camera at the origin whose near plane's corners stay within the clearance. Its far plane is set last.
+/// Returns a camera at the origin whose near plane's corners stay within the clearance. Its far plane is set
+/// last.
 fn lens(radius: f32, aspect: f32) -> PerspectiveCamera {
     let fov_y = FOV.to_radians();
     let corner = Vec3::new(aspect * (fov_y * 0.5).tan(), (fov_y * 0.5).tan(), 1.0).length();
@@ -109,8 +110,8 @@ fn lens(radius: f32, aspect: f32) -> PerspectiveCamera {
     PerspectiveCamera { eye: glam::DVec3::ZERO, forward: Vec3::NEG_Z, up: Vec3::Y, fov_y, aspect, near, far }
 }
 
-/// Cameras on a circle around the scene, at the least distance from which all of them see all of it. They look at a
-/// point of the vertical through its middle that lets them come nearest.
+/// Returns cameras on a circle around the scene, at the least distance from which each one sees the whole
+/// scene. They look at the point on the vertical through the centre that minimises this distance.
 fn orbit(probe: &Probe, bounds: Aabb, lens: PerspectiveCamera) -> Vec<PerspectiveCamera> {
     let middle = (bounds.min + bounds.max) * 0.5;
     let (sin, cos) = ORBIT_ELEVATION.to_radians().sin_cos();
@@ -120,8 +121,8 @@ fn orbit(probe: &Probe, bounds: Aabb, lens: PerspectiveCamera) -> Vec<Perspectiv
         .collect();
     let needs = outward.par_iter().map(|&outward| Needs::of(probe.tracer, middle, outward, &lens));
     let needs = needs.reduce(Needs::default, Needs::max);
-    // Raising what is looked at by r brings the eye r sin nearer, and moves the scene down by r cos in the picture; it
-    // helps until top and bottom need the same, or no more than the sides.
+    // Raising the target by r brings the eye r sin nearer, and moves the scene down by r cos in the picture.
+    // It helps until top and bottom need the same distance, or no more than the sides.
     let steepness = cos / (lens.fov_y * 0.5).tan() / ORBIT_FILL;
     let level = (0.5 * (needs.top + needs.bottom)).max(needs.sides);
     let raise = ((needs.top - level).max(0.0) - (needs.bottom - level).max(0.0)) / steepness;
@@ -134,8 +135,8 @@ fn orbit(probe: &Probe, bounds: Aabb, lens: PerspectiveCamera) -> Vec<Perspectiv
     outward.iter().map(camera).collect()
 }
 
-/// Least distances from a point at which a camera that looks at it has the whole scene below the top of its picture,
-/// above its bottom, between its sides, and before it. In metres.
+/// Least distances, in metres, from a point to a camera that looks at it, so that the whole scene is below
+/// the top of the picture, above its bottom, between its sides, and in front of the camera.
 #[derive(Clone, Copy, Debug)]
 struct Needs {
     top: f32,
@@ -174,7 +175,7 @@ impl Needs {
     }
 }
 
-/// Cameras through the scene: lowered, raised and shortened until they serve.
+/// Returns cameras through the scene: the route is lowered, raised and shortened until all views are usable.
 fn flight(probe: &Probe, bounds: Aabb, lens: PerspectiveCamera) -> Option<Vec<PerspectiveCamera>> {
     let radius = probe.clearance / CLEARANCE;
     let height = EYE_HEIGHT.clamp(HEIGHT_SHARES[0] * radius, HEIGHT_SHARES[1] * radius);
@@ -188,7 +189,7 @@ fn flight(probe: &Probe, bounds: Aabb, lens: PerspectiveCamera) -> Option<Vec<Pe
     })
 }
 
-/// Cameras along a part of a route, there or back.
+/// Returns cameras along a part of a route, in one direction or the other.
 fn fly(probe: &Probe, route: &Route, share: f32, lens: PerspectiveCamera) -> Option<Vec<PerspectiveCamera>> {
     let mut eyes = smooth(probe, route.samples(FRAMES, share));
     for eye in &mut eyes {
@@ -202,7 +203,7 @@ fn fly(probe: &Probe, route: &Route, share: f32, lens: PerspectiveCamera) -> Opt
     })
 }
 
-/// The place, or one nearby, that is outside solids and away from every triangle.
+/// Returns the position, or one nearby, that is outside solids and away from every triangle.
 fn free(probe: &Probe, eye: Vec3) -> Option<Vec3> {
     let aside = [Vec3::Y, Vec3::X, Vec3::NEG_X, Vec3::Z, Vec3::NEG_Z];
     let shifts = SHIFTS.iter().flat_map(|shift| aside.map(|aside| aside * shift * probe.clearance));
@@ -210,7 +211,7 @@ fn free(probe: &Probe, eye: Vec3) -> Option<Vec3> {
     places.find(|&place| probe.is_open(place) && probe.is_clear(place))
 }
 
-/// Takes the corners out of a way, where it stays open and as high above the ground.
+/// Smooths the corners of a route, where it stays open and keeps its height above the ground.
 fn smooth(probe: &Probe, mut eyes: Vec<Vec3>) -> Vec<Vec3> {
     for _ in 0..SMOOTHINGS {
         for index in 1..eyes.len() - 1 {
@@ -226,7 +227,7 @@ fn smooth(probe: &Probe, mut eyes: Vec<Vec3>) -> Vec<Vec3> {
     eyes
 }
 
-/// Cameras that look ahead and down by an angle in radians, if each has its picture filled.
+/// Returns cameras that look ahead and down by an angle in radians, if geometry fills the picture of each.
 fn serving(probe: &Probe, eyes: &[Vec3], pitch: f32, lens: PerspectiveCamera) -> Option<Vec<PerspectiveCamera>> {
     let last = eyes.len() - 1;
     let camera = |index: usize| {
@@ -259,7 +260,7 @@ mod tests {
         found.path.frames.iter().filter(|frame| frame.group == group).map(|frame| &frame.camera).collect()
     }
 
-    /// Whether all promises of a found path hold, both parts of it there.
+    /// Asserts the guarantees of a found path with both of its parts.
     fn assert_serves(name: &str, triangles: &[Corners]) -> Found {
         let found = found(triangles);
         let bounds = bounds(triangles);
@@ -335,7 +336,7 @@ mod tests {
         assert!(refused(&Tracer::new([]), Aabb::new(Vec3::ZERO, Vec3::ONE)).contains("no triangles"));
         let point = Tracer::new([[Vec3::ONE; 3]]);
         for bad in [[Vec3::ONE; 2], [Vec3::NAN; 2], [Vec3::INFINITY, Vec3::NEG_INFINITY], [Vec3::ONE, Vec3::ZERO]] {
-            assert!(refused(&point, Aabb::new(bad[0], bad[1])).contains("no size"), "{bad:?}");
+            assert!(refused(&point, Aabb::new(bad[0], bad[1])).contains("not a usable size"), "{bad:?}");
         }
     }
 }

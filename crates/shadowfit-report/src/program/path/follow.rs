@@ -6,16 +6,17 @@ use shadowfit_study::{camera_reaches, file_camera};
 
 use super::{CameraPath, PathFrame};
 
-/// Most frames of a path that an animation gives.
+/// Greatest number of frames of an animated path.
 const MAX_FRAMES: f32 = 100_000.0;
 
-/// Returns a frame of a camera, by its number from 1, for each step of the first animation at `play` frames a second; one
-/// frame where nothing plays. All frames have one lens, near and far plane. The picture keeps the height of the camera's, and
-/// its width follows from `aspect` (width divided by height).
+/// Returns a path for a camera of the file, by its number from 1. It has a frame for each step of the first
+/// animation at `play` frames per second, or one frame if nothing plays. All frames have one lens, near and
+/// far plane. The vertical field of view is the camera's, and the horizontal one follows from `aspect` (width
+/// divided by height).
 ///
 /// # Errors
 ///
-/// When the file has no such camera, its node has no size, or the animation has too many frames.
+/// If the file has no such camera, its node has no size, or the animation has too many frames.
 pub(crate) fn follow(scene: &Scene, number: u32, play: Option<f32>, aspect: f32) -> Result<CameraPath> {
     let count = scene.cameras.len();
     let index = (number as usize).checked_sub(1).filter(|index| *index < count);

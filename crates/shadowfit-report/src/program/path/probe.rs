@@ -1,36 +1,36 @@
-//! What is around a place: whether a camera can stand there, and what it would see.
+//! Tests camera positions: whether a camera fits there, and how much its picture shows.
 //!
-//! Rays sort out most places quickly; the distance to every triangle is computed for the few that are left, so that
-//! no thin wall or wire slips between the rays.
+//! Rays reject most positions quickly. For the remaining ones the distance to every triangle is computed, so
+//! that thin walls and wires between the rays are not missed.
 
 use glam::Vec3;
 use rayon::prelude::*;
 use shadowfit::Camera;
 use shadowfit_truth::Tracer;
 
-/// Directions that rays are sent in, 13° apart: enough to find out on which side of a surface a place is.
+/// Number of ray directions, 13° apart: enough to tell whether a position is inside a solid.
 const DIRECTIONS: usize = 256;
-/// Angle between neighbours on a sphere on which points wind upward evenly, in radians (the golden angle).
+/// Angle between successive points of an even spiral on a sphere, in radians (the golden angle).
 const GOLDEN_ANGLE: f64 = 2.399_963_229_728_653;
-/// Share of the surfaces met from their back from which on a place counts as inside a solid.
+/// Least share of back-face hits at a position that counts as inside a solid.
 const INSIDE: f32 = 0.5;
 /// Rays across and down a view.
 const VIEW_RAYS: [usize; 2] = [12, 8];
 
-/// Asks a scene about places. World space, metres.
+/// Tests positions in a scene. World space, metres.
 pub(super) struct Probe<'a> {
     pub(super) tracer: &'a Tracer,
-    /// Distance that a camera keeps from every triangle.
+    /// Minimum distance of a camera from every triangle.
     pub(super) clearance: f32,
     directions: Vec<Vec3>,
 }
 
-/// What a camera sees, by a coarse grid of rays.
+/// The content of a camera's view, sampled with a coarse grid of rays.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Seen {
-    /// Share of the rays that meet geometry.
+    /// Share of the rays that hit geometry.
     pub(super) share: f32,
-    /// Median distance of what they meet, in metres; 0 where they meet nothing.
+    /// Median distance of the hits, in metres; 0 if no ray hits.
     pub(super) distance: f32,
 }
 
@@ -39,7 +39,7 @@ impl<'a> Probe<'a> {
         Self { tracer, clearance, directions: (0..DIRECTIONS).map(direction).collect() }
     }
 
-    /// Whether rays say that a camera can stand here: outside solids, and nothing within the clearance.
+    /// Returns whether the rays allow a camera here: outside solids, and no hit within the clearance.
     pub(super) fn is_open(&self, eye: Vec3) -> bool {
         let (mut met, mut from_behind) = (0, 0);
         for &direction in &self.directions {
@@ -53,7 +53,7 @@ impl<'a> Probe<'a> {
         from_behind as f32 <= INSIDE * met as f32
     }
 
-    /// Whether no triangle at all is within the clearance.
+    /// Returns whether no triangle at all is within the clearance.
     pub(super) fn is_clear(&self, eye: Vec3) -> bool {
         (0..self.tracer.len() as u32).into_par_iter().all(|triangle| {
             let corners = self.tracer.corners(triangle);
@@ -61,7 +61,7 @@ impl<'a> Probe<'a> {
         })
     }
 
-    /// Whether a camera can fly straight from one place to another, with as much room at its sides as the clearance.
+    /// Returns whether a camera can fly straight between two positions, with the clearance on all sides.
     pub(super) fn is_way(&self, from: Vec3, to: Vec3) -> bool {
         let way = to - from;
         let side = way.cross(Vec3::Y).normalize_or_zero() * self.clearance;
@@ -72,7 +72,7 @@ impl<'a> Probe<'a> {
                 .all(|offset| self.tracer.first_hit(from + offset, way).is_none_or(|hit| hit.distance > 1.0))
     }
 
-    /// Height of the camera over the surface below it, in metres; infinite where there is none.
+    /// Returns the height of the camera over the surface below it, in metres; infinite if there is none.
     pub(super) fn height(&self, eye: Vec3) -> f32 {
         self.tracer.first_hit(eye, Vec3::NEG_Y).map_or(f32::INFINITY, |hit| hit.distance)
     }
@@ -97,7 +97,7 @@ impl<'a> Probe<'a> {
     }
 }
 
-/// Unit directions spread evenly over the sphere, on a spiral.
+/// Returns a unit direction of an even spiral on the sphere.
 fn direction(index: usize) -> Vec3 {
     let height = 1.0 - (2.0 * index as f64 + 1.0) / DIRECTIONS as f64;
     let radius = (1.0 - height * height).sqrt();
@@ -105,21 +105,21 @@ fn direction(index: usize) -> Vec3 {
     Vec3::new((radius * cos) as f32, height as f32, (radius * sin) as f32)
 }
 
-/// What a tracer says of triangles that were not finite, and what nobody can see.
+/// Returns whether a triangle is a single point. The tracer stores triangles that are not finite as such.
 pub(super) fn is_a_point(corners: &[Vec3; 3]) -> bool {
     corners[0] == corners[1] && corners[1] == corners[2]
 }
 
-/// Whether a triangle is at least a distance away.
+/// Returns whether a triangle is at least a distance away.
 fn is_beyond(point: Vec3, corners: &[Vec3; 3], distance: f32) -> bool {
     let [a, b, c] = *corners;
     let (low, high) = (a.min(b).min(c), a.max(b).max(c));
-    // The box is cheaper to ask, and settles it for nearly every triangle.
+    // The box test is cheaper and decides nearly every triangle.
     point.distance_squared(point.clamp(low, high)) >= distance * distance
         || point.distance_squared(nearest(point, corners)) >= distance * distance
 }
 
-/// The nearest point of a triangle: above its face, or on one of its edges.
+/// Returns the nearest point of a triangle, on its face or on one of its edges.
 fn nearest(point: Vec3, corners: &[Vec3; 3]) -> Vec3 {
     let [a, b, c] = *corners;
     let normal = (b - a).cross(c - a);
@@ -130,7 +130,7 @@ fn nearest(point: Vec3, corners: &[Vec3; 3]) -> Vec3 {
     let edges = [(a, b), (b, c), (c, a)].map(|(from, to)| {
         let edge = to - from;
         let share = (point - from).dot(edge) / edge.length_squared();
-        // A share that is not a number belongs to an edge without length.
+        // The share of an edge without length is NaN.
         from + edge * if share.is_nan() { 0.0 } else { share.clamp(0.0, 1.0) }
     });
     edges.into_iter().min_by(|x, y| point.distance_squared(*x).total_cmp(&point.distance_squared(*y))).unwrap_or(a)

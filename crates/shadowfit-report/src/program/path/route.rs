@@ -1,5 +1,5 @@
-//! A way through a scene: places where a camera can stand, which of them it can fly between, and the longest way
-//! through the middle of those that hang together.
+//! A route through a scene: finds camera positions, links the pairs between which a camera can fly, and takes
+//! the longest route through the middle of the largest linked set.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -10,39 +10,41 @@ use shadowfit::Aabb;
 
 use super::probe::Probe;
 
-/// Columns of places along each horizontal side of the scene: fine enough for doors and streets.
+/// Number of columns along each horizontal side of the scene: fine enough for doors and streets.
 const COLUMNS: usize = 28;
-/// Share of the scene's sides that places are looked for in; a camera at the very border sees mostly sky.
+/// Central share of the scene's sides that is searched. A camera at the border sees mostly sky.
 const CENTRAL: f32 = 0.9;
-/// Where in its cell a column stands; off the middle, so that rays straight down miss the edges of regular models.
+/// Position of a column in its cell. It is off the middle, so that vertical rays miss the edges of regular
+/// models.
 const OFF_MIDDLE: f32 = 0.537;
-/// Floors of a column that are tried, from the highest; deeper ones are cellars of cellars.
+/// Number of floors of a column that are tried, from the highest down.
 const FLOORS: usize = 8;
-/// Cosine of the slope up to which a surface counts as a floor, 60°.
+/// Cosine of the greatest slope of a floor, 60°.
 const FLOOR_COSINE: f32 = 0.5;
-/// Highest place in the gap below a ceiling.
+/// Highest position in the gap below a ceiling, as a share of the gap.
 const GAP_SHARE: f32 = 0.6;
-/// Rise for a metre forward that a flight from column to column may have.
+/// Greatest rise per metre forward of a flight between columns.
 const RISE: f32 = 1.2;
 
-/// Places that a camera can fly between.
+/// Camera positions and the links between them.
 pub(super) struct Places {
     eyes: Vec<Vec3>,
-    /// For each place those that it can fly to, and how far that is, in metres.
+    /// Links of each position: the index of the other position and the distance to it, in metres.
     links: Vec<Vec<(usize, f32)>>,
 }
 
-/// A way from place to place, and how far along it the place nearest the middle is.
+/// A route between positions.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Route {
     /// World space, metres.
     pub(super) points: Vec<Vec3>,
-    /// In metres from the first point.
+    /// Distance along the route of the position nearest to the scene's middle, in metres from the first
+    /// point.
     pub(super) middle: f32,
 }
 
 impl Places {
-    /// Places at `height` above floors within `bounds` (metres), lower under low ceilings.
+    /// Finds positions at `height` above floors within `bounds` (metres), and lower ones under low ceilings.
     pub(super) fn new(probe: &Probe, bounds: Aabb, height: f32) -> Self {
         let columns: Vec<Vec<Vec3>> =
             (0..COLUMNS * COLUMNS).into_par_iter().map(|column| column_eyes(probe, bounds, height, column)).collect();
@@ -65,7 +67,8 @@ impl Places {
         Self { eyes, links }
     }
 
-    /// The way between two far ends of the largest set of places that hang together, past the place nearest `middle`.
+    /// Returns the route between two far ends of the largest linked set, through the position nearest to
+    /// `middle`.
     pub(super) fn route(&self, middle: Vec3) -> Option<Route> {
         let largest = self.largest();
         let to_middle = |place: usize| (self.eyes[place].xz() - middle.xz()).length();
@@ -75,11 +78,11 @@ impl Places {
             |score: &dyn Fn(usize) -> f32| largest.iter().copied().max_by(|&a, &b| score(a).total_cmp(&score(b)));
         let first = farthest(&|place| distance[place])?;
         let direction = |place: usize| (self.eyes[place] - self.eyes[start]).normalize_or_zero();
-        // The other end is far as well, and on the other side.
+        // The other end is also far, and on the other side.
         let last = farthest(&|place| distance[place] * (1.0 - direction(place).dot(direction(first))))?;
         let ancestors = |place: usize| std::iter::successors(Some(place), |&place| parent[place]).collect::<Vec<_>>();
         let (mut there, mut back) = (ancestors(first), ancestors(last));
-        // What both ways share is a dead end.
+        // The shared part of both routes is a dead end.
         while there.len() > 1 && back.len() > 1 && there[there.len() - 2] == back[back.len() - 2] {
             there.pop();
             back.pop();
@@ -90,7 +93,7 @@ impl Places {
         Some(Route { points, middle })
     }
 
-    /// The largest set of places that hang together; the first of several.
+    /// Returns the largest linked set of positions, or the first of several.
     fn largest(&self) -> Vec<usize> {
         let mut seen = vec![false; self.eyes.len()];
         let mut largest = Vec::new();
@@ -111,12 +114,13 @@ impl Places {
         largest
     }
 
-    /// Lengths of the shortest ways from a place, and the place before each on its way (Dijkstra 1959).
+    /// Returns the lengths of the shortest routes from a position, and the previous position on each
+    /// (Dijkstra 1959).
     fn distances(&self, start: usize) -> (Vec<f32>, Vec<Option<usize>>) {
         let mut distance = vec![f32::INFINITY; self.eyes.len()];
         let mut parent = vec![None; self.eyes.len()];
         distance[start] = 0.0;
-        // The nearest first: the bits of floats that are not negative are in the order of the floats.
+        // The nearest comes first: the bits of non-negative floats have the order of the floats.
         let mut waiting = BinaryHeap::from([Reverse((0.0_f32.to_bits(), start))]);
         while let Some(Reverse((so_far, place))) = waiting.pop() {
             let so_far = f32::from_bits(so_far);
@@ -140,7 +144,8 @@ impl Route {
         self.points.windows(2).map(|pair| pair[0].distance(pair[1])).sum()
     }
 
-    /// `count` points evenly along the part of the route around its middle that is `share` of its length.
+    /// Returns `count` evenly spaced points on the part of the route around its middle that is `share` of its
+    /// length.
     pub(super) fn samples(&self, count: usize, share: f32) -> Vec<Vec3> {
         let length = self.length();
         let start = (self.middle - 0.5 * share * length).clamp(0.0, (1.0 - share) * length);
@@ -148,7 +153,7 @@ impl Route {
         (0..count).map(|index| self.at(place(index))).collect()
     }
 
-    /// The point at a distance along the route, in metres.
+    /// Returns the point at a distance along the route, in metres.
     fn at(&self, mut distance: f32) -> Vec3 {
         for pair in self.points.windows(2) {
             let step = pair[0].distance(pair[1]);
@@ -161,13 +166,13 @@ impl Route {
     }
 }
 
-/// Pairs of columns beside each other, diagonals included, each pair once.
+/// Returns pairs of neighbouring columns, including diagonal ones, each pair once.
 fn neighbours() -> impl Iterator<Item = (usize, usize)> {
-    // To the right, and down, straight and slanting: the others are these seen from the other side.
+    // Only steps to the right and down, straight and diagonal: the opposite steps give the same pairs.
     let steps = [(1, 1), (0, 2), (1, 2), (1, 0)];
     (0..COLUMNS * COLUMNS).flat_map(move |column| {
         let (x, z) = (column % COLUMNS, column / COLUMNS);
-        // Steps down are counted from the row above, so that none is negative.
+        // Rows are counted from the row above, so that no step is negative.
         let beside = steps.map(|(dx, dz)| (x + dx, (z + dz).wrapping_sub(1)));
         let inside = beside.into_iter().filter(|&(x, z)| x < COLUMNS && z < COLUMNS);
         inside.map(move |(x, z)| (column, z * COLUMNS + x))
@@ -179,7 +184,7 @@ fn is_link(probe: &Probe, from: Vec3, to: Vec3) -> bool {
     (from.y - to.y).abs() <= RISE * across && probe.is_way(from, to)
 }
 
-/// Places above the floors of a column, highest first.
+/// Returns the positions above the floors of a column, highest first.
 fn column_eyes(probe: &Probe, bounds: Aabb, height: f32, column: usize) -> Vec<Vec3> {
     let share = |index: usize| 0.5 + CENTRAL * ((index as f32 + OFF_MIDDLE) / COLUMNS as f32 - 0.5);
     let shares = Vec2::new(share(column % COLUMNS), share(column / COLUMNS));
@@ -205,7 +210,7 @@ fn column_eyes(probe: &Probe, bounds: Aabb, height: f32, column: usize) -> Vec<V
 mod tests {
     use super::*;
 
-    /// Places in a row with a branch at the second.
+    /// Returns positions in a row, with a branch at the second one.
     fn branched() -> Places {
         let eyes = vec![Vec3::ZERO, Vec3::X, Vec3::X * 2.0, Vec3::X * 3.0, Vec3::new(1.0, 0.0, 0.5), Vec3::splat(9.0)];
         let mut links = vec![Vec::new(); eyes.len()];

@@ -1,11 +1,11 @@
-//! Generated scenes for the tests of found paths. World space, metres; fronts are outside of solids.
+//! Generated scenes for the tests of found paths. World space, metres. Front faces point out of solids.
 
 use glam::Vec3;
 use shadowfit::Aabb;
 
 pub(super) type Corners = [Vec3; 3];
 
-/// A closed box, its fronts outside.
+/// Returns a closed box with outward front faces.
 pub(super) fn cuboid(low: Vec3, high: Vec3) -> Vec<Corners> {
     let corner = |index: usize| {
         let pick = |bit: usize, low: f32, high: f32| if index >> bit & 1 == 1 { high } else { low };
@@ -16,7 +16,8 @@ pub(super) fn cuboid(low: Vec3, high: Vec3) -> Vec<Corners> {
     quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).map(|triangle| triangle.map(corner)).collect()
 }
 
-/// A room of 8 × 3 × 6 m seen from inside, with a table, a cupboard that reaches the ceiling, and a pillar.
+/// Returns a room of 8 × 3 × 6 m seen from inside, with a table, a cupboard that reaches the ceiling, and a
+/// pillar.
 pub(super) fn room() -> Vec<Corners> {
     let walls = cuboid(Vec3::new(-4.0, 0.0, -3.0), Vec3::new(4.0, 3.0, 3.0));
     let mut triangles: Vec<Corners> = walls.into_iter().map(|[a, b, c]| [a, c, b]).collect();
@@ -26,7 +27,7 @@ pub(super) fn room() -> Vec<Corners> {
     triangles
 }
 
-/// A square kilometre of hills, a sheet that faces upward.
+/// Returns a square kilometre of hills, a sheet that faces upward.
 pub(super) fn hills() -> Vec<Corners> {
     const CELLS: usize = 64;
     let point = |x: usize, z: usize| {
@@ -42,14 +43,14 @@ pub(super) fn hills() -> Vec<Corners> {
         .collect()
 }
 
-/// A small solid on a floor of 10 m.
+/// Returns a small solid on a floor of 10 m.
 pub(super) fn object_on_floor() -> Vec<Corners> {
     let mut triangles = cuboid(Vec3::new(-5.0, -0.1, -5.0), Vec3::new(5.0, 0.0, 5.0));
     triangles.extend(cuboid(Vec3::new(-0.3, 0.0, -0.3), Vec3::new(0.3, 1.0, 0.3)));
     triangles
 }
 
-/// The box around triangles.
+/// Returns the box around triangles.
 pub(super) fn bounds(triangles: &[Corners]) -> Aabb {
     Aabb::from_points(triangles.iter().flatten().copied()).expect("triangles")
 }

@@ -1,5 +1,5 @@
-// Second pass: how far each pixel is from the nearest transition in its row. A workgroup handles a row, and each of
-// its invocations a part of it.
+// Second pass: distance of each pixel to the nearest transition in its row. A workgroup handles one row, and
+// each of its invocations one part of the row.
 
 const LANES: u32 = 64u;
 var<workgroup> first_of: array<u32, LANES>;
@@ -10,7 +10,7 @@ fn differs(here: u32, pixel: vec2<u32>) -> bool {
     return (there & JUDGED) != 0u && ((here ^ there) & LIT) != 0u;
 }
 
-// Whether the truth of one of four neighbours differs.
+// Returns whether the verdict of one of the four neighbours differs.
 fn is_transition(pixel: vec2<u32>) -> bool {
     let here = pixels[pixel_index(pixel)].flags;
     if (here & JUDGED) == 0u {
@@ -40,7 +40,7 @@ fn is_transition(pixel: vec2<u32>) -> bool {
     first_of[lane] = first;
     last_of[lane] = last;
     workgroupBarrier();
-    // The nearest transitions before and behind this part.
+    // The nearest transitions before and after this part.
     var before = NONE;
     for (var other = 0u; other < lane; other++) {
         before = select(before, last_of[other], last_of[other] != NONE);

@@ -1,4 +1,4 @@
-// Third pass: the edge zone, from the rows' distances, and the class of each pixel.
+// Third pass: the edge zone, from the distances along the rows, and the class of each pixel.
 
 @group(1) @binding(3) var classes: texture_storage_2d<r32uint, write>;
 
@@ -8,7 +8,7 @@ const FALSE_LIGHT: u32 = 3u;
 const HOLE: u32 = 4u;
 const EDGE: u32 = 5u;
 
-// Logarithms of pixels per texel in the texture: steps in an octave, and the step that stands for 1.
+// Encoding of log2(pixels per texel) in the texture: steps per octave, and the step that encodes 1.
 const OCTAVE: f32 = 256.0;
 const ONE: f32 = 32768.0;
 const MAX_STEP: f32 = 65535.0;
@@ -22,8 +22,8 @@ fn is_row_near(pixel: vec2<u32>, step: u32, square: f32) -> bool {
     return along != NONE && f32(along * along + step * step) <= square;
 }
 
-// Whether a transition lies within a number of pixels: squares of whole pixels against that of the width less half a
-// pixel, as the CPU compares them.
+// Returns whether a transition lies within `width` pixels. Like the CPU, it compares the square of the
+// distance in whole pixels with the square of the width less half a pixel.
 fn is_near_transition(pixel: vec2<u32>, width: f32) -> bool {
     // No picture has a longer diagonal.
     let reach = min(width - 0.5, 65536.0);
@@ -39,7 +39,8 @@ fn is_near_transition(pixel: vec2<u32>, width: f32) -> bool {
     return false;
 }
 
-// Whether the map that is read (its place plus 1) holds none of the point's occluders, or no map is read.
+// Returns whether no map is read, or the map that is read (its place plus 1) holds none of the point's
+// occluders.
 fn is_hole(pixel: vec2<u32>, map_plus_1: u32) -> bool {
     if map_plus_1 == 0u {
         return true;
@@ -74,7 +75,7 @@ fn class_of(pixel: vec2<u32>, flags: u32, is_in_edge_zone: bool) -> u32 {
     var bits = 0u;
     if (pixel.flags & JUDGED) != 0u {
         let map_plus_1 = pixel.flags >> MAP_SHIFT;
-        // Without a map no texel is read, and the zone's width is in pixels.
+        // If no map is read, the zone's width is in pixels.
         let texel_width = select(1.0, max(pixel.pixels_per_texel, 1.0), map_plus_1 != 0u);
         var edge_width = judge.edge_width;
         var index_plus_1 = 0u;

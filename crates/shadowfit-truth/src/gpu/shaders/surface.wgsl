@@ -1,10 +1,10 @@
-// The visible point of a pixel, and where points lie in shadow maps. Positions are relative to the eye.
+// The visible point of a pixel, and positions of points in shadow maps. Positions are relative to the eye.
 
 struct Surface {
     position: vec3<f32>,
-    // Unit geometric normal on the side of the eye.
+    // Unit geometric normal on the eye's side.
     normal: vec3<f32>,
-    // Along the line of sight through the pixel's centre; its component along the view is 1.
+    // Direction of the line of sight through the pixel's centre. Its component along the view is 1.
     ray: vec3<f32>,
     facing: f32,
     view_depth: f32,
@@ -12,7 +12,7 @@ struct Surface {
 
 struct MapPosition {
     texel: vec2<f32>,
-    // 0 nearest to the light.
+    // 0 is nearest to the light.
     depth: f32,
     ndc: vec3<f32>,
     w: f32,
@@ -20,9 +20,9 @@ struct MapPosition {
 
 // The line of sight through a pixel's centre.
 struct Sight {
-    // Where its view depth is 0.
+    // The point of view depth 0.
     origin: vec3<f32>,
-    // Its component along the view is 1.
+    // The component along the view is 1.
     ray: vec3<f32>,
 }
 
@@ -34,12 +34,13 @@ fn sight_of(pixel: vec2<u32>) -> Sight {
     return Sight(select(nothing, aside, is_parallel), judge.forward + select(aside, nothing, is_parallel));
 }
 
-// Where the pixel's ray meets a triangle's plane, with the view depth clamped to that of the corners.
+// Returns the intersection of the pixel's ray with a triangle's plane. Its view depth is clamped to the
+// corners' range.
 fn surface_of(pixel: vec2<u32>, a: vec3<f32>, b: vec3<f32>, c: vec3<f32>) -> Surface {
     let sight = sight_of(pixel);
     let ray = sight.ray;
     let area = cross(b - a, c - a);
-    // Scaled first: the squares of small triangles' areas are below what f32 can hold.
+    // Scales first, because f32 cannot hold the squares of small triangles' areas.
     let largest = max(max(abs(area.x), abs(area.y)), abs(area.z));
     var normal = vec3<f32>(0.0);
     if largest > 0.0 {
@@ -82,13 +83,14 @@ fn is_inside(map: Map, at: MapPosition) -> bool {
     return is_within_sides(map, at) && at.depth >= -1e-5 && at.depth <= 1.0 + 1e-5;
 }
 
-// Whether the map at a place in the order holds a point.
+// Returns whether the map at a place in the order holds a point.
 fn is_in_map(place: u32, position: vec3<f32>) -> bool {
     return is_inside(judge.maps[place], project(judge.maps[place], position));
 }
 
-// By view depth: the first map whose split is beyond the point, or the next later one that holds the point; the one
-// behind it where that weighs more. NONE without one.
+// Selects by view depth: the first map whose split is beyond the point, or the next later one that holds the
+// point. If this map is blended into the next one, and the next one has the greater weight, returns the next
+// one. NONE if no map holds the point.
 fn choose_by_view_depth(view_depth: f32, position: vec3<f32>) -> u32 {
     var is_reached = false;
     for (var place = 0u; place < judge.map_count; place++) {
@@ -108,8 +110,9 @@ fn choose_by_view_depth(view_depth: f32, position: vec3<f32>) -> u32 {
     return NONE;
 }
 
-// By coverage: the first map that holds the point with the filter's reach, or the next such one where that weighs more;
-// else the first that holds it. NONE without one.
+// Selects by coverage: the first map that holds the point with the filter's footprint, or the next such map
+// if that one has the greater blend weight. If there is none, the first map that holds the point. NONE
+// without one.
 fn choose_by_coverage(position: vec3<f32>) -> u32 {
     var first = NONE;
     var clamped = NONE;
@@ -122,7 +125,8 @@ fn choose_by_coverage(position: vec3<f32>) -> u32 {
         let free = min(at.texel, map.size - at.texel);
         let beyond = min(free.x, free.y) - judge.reach;
         if beyond >= 0.0 {
-            // The first one is read alone, or weighs no less than the next one; or this is the next one.
+            // The first map is read alone or weighs at least as much as the next one; or this is the next
+            // one.
             if first != NONE || beyond >= 0.5 * judge.blend {
                 return place;
             }
@@ -134,7 +138,8 @@ fn choose_by_coverage(position: vec3<f32>) -> u32 {
     return select(first, clamped, first == NONE);
 }
 
-// The place in the order of the map that weighs more of those that a point reads; NONE without one.
+// Returns the place in the order of the map with the greatest weight among the maps that a point reads, or
+// NONE.
 fn choose(surface: Surface) -> u32 {
     if judge.by_coverage != 0u {
         return choose_by_coverage(surface.position);
@@ -142,7 +147,7 @@ fn choose(surface: Surface) -> u32 {
     return choose_by_view_depth(surface.view_depth, surface.position);
 }
 
-// Whether one of the maps that a point would have read in the frame before covers it.
+// Returns whether a map that the point would have read in the previous frame covers it.
 fn is_covered_before(position: vec3<f32>) -> bool {
     let view_depth = dot(position, judge.before.forward) + judge.before.eye_depth;
     for (var place = 0u; place < judge.before.map_count; place++) {
@@ -154,14 +159,14 @@ fn is_covered_before(position: vec3<f32>) -> bool {
     return false;
 }
 
-// How far a point moves on its tangent plane when its line of sight is moved by `across`: at a view depth of 1 for a
-// perspective.
+// Returns how far a point moves on its tangent plane when its line of sight is moved by `across`, in metres;
+// for a perspective, at a view depth of 1 m.
 fn slide(surface: Surface, across: vec3<f32>) -> vec3<f32> {
     let along = dot(across, surface.normal) / dot(surface.ray, surface.normal);
     return (across - surface.ray * along) * select(surface.view_depth, 1.0, judge.is_orthographic != 0u);
 }
 
-// Pixels per texel along the worse axis: one over the smaller singular value of texels a pixel.
+// Returns pixels per texel along the worse axis: one over the smaller singular value of texels per pixel.
 fn pixels_per_texel(surface: Surface, map: Map) -> f32 {
     let at = project(map, surface.position);
     let u = (map.row_x.xyz - map.row_w.xyz * at.ndc.x) * (0.5 * map.size.x / at.w);

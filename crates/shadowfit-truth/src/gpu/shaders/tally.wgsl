@@ -1,5 +1,5 @@
-// Fourth pass: the sums of the judged picture. A workgroup sums a square of pixels in its own memory, and then adds its
-// sums to those of the picture. BINS and ERROR_ONE are written by Rust.
+// Fourth pass: the sums of the judged picture. Each workgroup sums a square of pixels in workgroup memory,
+// and then adds its sums to the picture's. Rust inserts the constants BINS and ERROR_ONE.
 
 struct Tally {
     // By class.
@@ -11,16 +11,22 @@ struct Tally {
     undersampled: atomic<u32>,
     crawl_compared: atomic<u32>,
     crawl_different: atomic<u32>,
-    // In steps of one by ERROR_ONE, two words.
+    // In steps of 1 / ERROR_ONE, two words.
     error_low: atomic<u32>,
     error_high: atomic<u32>,
+    // Cosines toward the light, in the same steps.
+    light_low: atomic<u32>,
+    light_high: atomic<u32>,
+    // Errors times these cosines, in the same steps.
+    light_error_low: atomic<u32>,
+    light_error_high: atomic<u32>,
     // By pixels per texel.
     bins: array<atomic<u32>, BINS>,
 }
 
 @group(1) @binding(3) var classes: texture_2d<u32>;
 @group(1) @binding(4) var<storage, read_write> tally: Tally;
-// As `seen`, from the maps of the frame before.
+// Like `seen`, drawn with the maps of the previous frame.
 @group(1) @binding(5) var seen_before: texture_2d<u32>;
 
 var<workgroup> sums: Tally;
@@ -28,27 +34,36 @@ var<workgroup> sums: Tally;
 const SIDE: u32 = 16u;
 const LANES: u32 = 256u;
 const CLASSES: u32 = 6u;
-// Of the classes' texture: its step that stands for 1 pixel per texel, and the steps of a bin, 32 bins an octave.
+// In the texture of classes: the step that encodes 1 pixel per texel, and the steps per bin, with 32 bins per
+// octave.
 const ONE: u32 = 32768u;
 const BIN_STEPS: u32 = 8u;
 
-// The bin of a pixel's bits in the texture of classes; the first and the last one hold all beyond them.
+// Returns the bin of a pixel's bits in the texture of classes. The first and the last bin hold all values
+// beyond them.
 fn bin_of(bits: u32) -> u32 {
     let first = ONE - BINS / 2u * BIN_STEPS;
     return min((max(bits >> 16u, first) - first) / BIN_STEPS, BINS - 1u);
 }
 
-// A factor from its bits: at least 0 and at most 1, and 0 where it is not a number.
+// Returns a factor from its bits, clamped to 0..=1. NaN becomes 0.
 fn factor_of(bits: u32) -> f32 {
     let is_number = (bits & 0x7fffffffu) <= 0x7f800000u;
     return clamp(bitcast<f32>(select(0u, bits, is_number)), 0.0, 1.0);
 }
 
-fn add_error(pixel: vec2<u32>, flags: u32) {
+fn steps(value: f32) -> u32 {
+    return u32(round(value * f32(ERROR_ONE)));
+}
+
+fn add_error(pixel: vec2<u32>, flags: u32, facing: f32) {
     let lit = select(0.0, 1.0, (flags & LIT) != 0u);
     let error = abs(factor_of(textureLoad(seen, pixel, 0).y) - lit);
+    let cosine = min(facing, 1.0);
+    atomicAdd(&sums.light_low, steps(cosine));
     if error > 0.0 {
-        atomicAdd(&sums.error_low, u32(round(error * f32(ERROR_ONE))));
+        atomicAdd(&sums.error_low, steps(error));
+        atomicAdd(&sums.light_error_low, steps(error * cosine));
     }
 }
 
@@ -94,10 +109,10 @@ fn add(pixel: vec2<u32>) {
     if is_in_edge_zone && is_covered && (flags & COVERED_BEFORE) != 0u {
         add_crawl(pixel, flags);
     }
-    add_error(pixel, flags);
+    add_error(pixel, flags, judged.facing);
 }
 
-// Adds the workgroup's sums to those of the picture.
+// Adds the workgroup's sums to the picture's.
 fn add_sums(lane: u32) {
     for (var bin = lane; bin < BINS; bin += LANES) {
         let count = atomicLoad(&sums.bins[bin]);
@@ -116,11 +131,21 @@ fn add_sums(lane: u32) {
         atomicAdd(&tally.undersampled, atomicLoad(&sums.undersampled));
         atomicAdd(&tally.crawl_compared, atomicLoad(&sums.crawl_compared));
         atomicAdd(&tally.crawl_different, atomicLoad(&sums.crawl_different));
+        // Each time a low word wraps, exactly one workgroup sees it and carries.
         let error = atomicLoad(&sums.error_low);
-        // Each time that the low word wraps, one workgroup sees it and carries.
-        let before = atomicAdd(&tally.error_low, error);
-        if before + error < before {
+        let error_before = atomicAdd(&tally.error_low, error);
+        if error_before + error < error_before {
             atomicAdd(&tally.error_high, 1u);
+        }
+        let light = atomicLoad(&sums.light_low);
+        let light_before = atomicAdd(&tally.light_low, light);
+        if light_before + light < light_before {
+            atomicAdd(&tally.light_high, 1u);
+        }
+        let light_error = atomicLoad(&sums.light_error_low);
+        let light_error_before = atomicAdd(&tally.light_error_low, light_error);
+        if light_error_before + light_error < light_error_before {
+            atomicAdd(&tally.light_error_high, 1u);
         }
     }
 }

@@ -1,9 +1,9 @@
 
-// Rays from a point, whose origin is relative to that of the triangles, and which occluders end them. The rays
-// themselves are those of another crate.
+// Rays from a point, with an origin relative to the origin of the triangles, and the rule that decides which
+// occluders block them. The crate shadowfit-rays traces the rays.
 
-// The point whose occluders are looked for, and the map that it reads: only those in the map count. Without a map,
-// NONE, every occluder counts.
+// The point whose occluders are searched, and the map that it reads. Only occluders in the map count. If the
+// map is NONE, every occluder counts.
 struct Receiver {
     map: u32,
     // Relative to the eye.
@@ -11,13 +11,13 @@ struct Receiver {
     depth: f32,
 }
 
-// Of the ray that is being traced.
+// Receiver of the current ray.
 var<private> receiver: Receiver;
 
-// Place in leaf order of each triangle by its own index.
+// Position in leaf order of each triangle, by the triangle's index.
 @group(2) @binding(0) var<storage, read> slots: array<u32>;
 
-// Whether the receiver's map holds an occluder at a distance toward the light.
+// Returns whether the receiver's map holds an occluder at a distance toward the light.
 fn shadowfit_rays_counts(hit: shadowfit_RayHit) -> bool {
     if receiver.map == NONE {
         return true;
@@ -28,14 +28,14 @@ fn shadowfit_rays_counts(hit: shadowfit_RayHit) -> bool {
         && (judge.depth_clamp != 0u || at.depth >= -1e-6);
 }
 
-// Whether the light's way to a point is blocked by an occluder that the receiver's map holds.
+// Returns whether an occluder that the receiver's map holds blocks the ray from a point to the light.
 fn is_occluded(surface: Surface, point: Receiver) -> bool {
     receiver = point;
     let origin = judge.eye + surface.position + surface.normal * judge.ray_offset;
     return shadowfit_rays_blocked(origin, judge.to_light);
 }
 
-// The visible point of a pixel that shows a triangle, given by its own index.
+// Returns the visible point of a pixel that shows a triangle, given by the triangle's index.
 fn surface_in(pixel: vec2<u32>, triangle: u32) -> Surface {
     let slot = slots[triangle];
     let corners = shadowfit_rays_triangle(slot);

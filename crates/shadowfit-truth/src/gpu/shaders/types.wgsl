@@ -1,7 +1,7 @@
-// What the passes share: the picture's camera, light and maps, and the pixels.
+// Types shared by the passes: the picture's camera, light and maps, and the pixels.
 
 struct Map {
-    // Rows of clip from positions relative to the eye.
+    // Rows of the matrix clip from eye-relative position.
     row_x: vec4<f32>,
     row_y: vec4<f32>,
     row_z: vec4<f32>,
@@ -11,27 +11,28 @@ struct Map {
     is_reversed: u32,
     blend_near: f32,
     index: u32,
-    // Of the edge zone where it is read: in pixels, or in texels where those are wider than pixels on screen.
+    // Width of the edge zone if this map is read: in pixels, or in texels if these are wider than pixels on
+    // screen.
     edge_width: f32,
     padding: u32,
 }
 
-// The maps of the frame before.
+// The maps of the previous frame.
 struct Before {
-    // Its unit direction of view.
+    // The previous frame's unit view direction.
     forward: vec3<f32>,
-    // View depth of this frame's eye in it.
+    // View depth of this frame's eye in the previous frame.
     eye_depth: f32,
     map_count: u32,
     by_coverage: u32,
     padding_0: u32,
     padding_1: u32,
-    // Their rows are of positions relative to this frame's eye.
+    // Rows apply to positions relative to this frame's eye.
     maps: array<Map, 8>,
 }
 
 struct Judge {
-    // Relative to the origin.
+    // Relative to the triangles' origin.
     eye: vec3<f32>,
     near: f32,
     right: vec3<f32>,
@@ -41,9 +42,9 @@ struct Judge {
     forward: vec3<f32>,
     max_distance: f32,
     to_light: vec3<f32>,
-    // Of the edge zone where no map is read, in pixels.
+    // Width of the edge zone if no map is read, in pixels.
     edge_width: f32,
-    // Of the picture: at a view depth of 1, or at any of an orthographic lens.
+    // Half size of the picture: at a view depth of 1, or at any view depth if the lens is orthographic.
     half_size: vec2<f32>,
     size: vec2<u32>,
     map_count: u32,
@@ -55,7 +56,7 @@ struct Judge {
     blend: f32,
     is_orthographic: u32,
     padding: u32,
-    // In the order in which points try them.
+    // In the order of selection.
     maps: array<Map, 8>,
     before: Before,
 }
@@ -66,9 +67,12 @@ struct Pixel {
     pixels_per_texel: f32,
     // Distance along the row to the nearest transition, in pixels.
     along_row: u32,
+    // Cosine between the surface normal and the direction toward the light.
+    facing: f32,
 }
 
-// Bits of Pixel.flags; above them stands the place in the order, plus 1, of the map that is read.
+// Bits of Pixel.flags. The bits from MAP_SHIFT on hold the place in the order, plus 1, of the map that is
+// read.
 const JUDGED: u32 = 1u;
 const LIT: u32 = 2u;
 const SEEMS_LIT: u32 = 4u;
@@ -76,7 +80,7 @@ const GRAZING: u32 = 8u;
 const COVERED_BEFORE: u32 = 16u;
 const MAP_SHIFT: u32 = 8u;
 
-// Greater than any pixels per texel or distance that matters; used where the CPU uses infinity.
+// Greater than any relevant number of pixels per texel or distance. Used where the CPU uses infinity.
 const FAR: f32 = 3.0e38;
 const NONE: u32 = 0xffffffffu;
 

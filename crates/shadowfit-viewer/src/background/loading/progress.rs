@@ -1,7 +1,8 @@
-//! How far the loading of a scene is: the time that has passed, as a share of the time that it will take.
+//! Progress of loading a scene: the elapsed time as a share of the expected time.
 //!
-//! The time of each phase follows from the scene's size by what it took in measured scenes. How fast this machine is
-//! follows from the phases before; within one, the clock moves the bar, up to where the next one begins.
+//! The expected time of each phase is computed from the scene's size, with weights from measured scenes. The
+//! speed of this machine is estimated from the previous phases. Within a phase, the clock moves the bar, up
+//! to the start of the next one.
 
 use web_time::Instant;
 
@@ -9,26 +10,27 @@ use shadowfit_scene::SceneSize;
 
 use crate::platform::BusyBar;
 
-/// Reading the file, parsing it, decoding what it has, making the scene ready.
+/// Number of phases: reading the file, parsing it, decoding its contents, preparing the scene.
 pub(super) const PHASES: usize = 4;
-/// The last phase; the others are the steps of loading a file.
+/// The last phase. All others are steps of loading a file.
 pub(super) const READY: usize = PHASES - 1;
 
-/// Bytes of JSON for each node in files of many nodes, of buffers for each triangle, and triangles of a node at least:
-/// what is taken for the size of a file until its JSON has been parsed.
+/// Estimates for a file whose JSON has not been parsed yet: bytes of JSON per node in files of many nodes,
+/// bytes of buffers per triangle, and least number of triangles per node.
 const JSON_A_NODE: u64 = 68;
 const BYTES_A_TRIANGLE: u64 = 18;
 const TRIANGLES_A_NODE: u64 = 12;
 
-/// From this number of drawn triangles on, fits get a box for each node, and meshes are not cut for them.
+/// Least number of drawn triangles for scenes whose meshes are not cut. Their fits get a box per node.
 const UNCUT: u64 = 6_000_000;
-/// Parts that the meshes of a smaller scene are cut into for fits.
+/// Number of parts into which the meshes of a smaller scene are cut for fits.
 const CUT_INTO: f64 = 1024.0;
 
-/// Time that says nothing yet about the speed of a machine, in seconds.
+/// Time that is too short to estimate the speed of a machine, in seconds.
 const TOO_SHORT: f64 = 0.004;
 
-/// Time that each phase takes on two cores of 2.5 GHz, in seconds. Weights are nanoseconds for a byte, node or triangle.
+/// Returns the time of each phase on two cores of 2.5 GHz, in seconds. Weights are in nanoseconds per byte,
+/// node or triangle.
 pub(super) fn weights(size: &SceneSize) -> [f64; PHASES] {
     let guessed = guessed(size);
     let [file, json, nodes, triangles, drawn, images] =
@@ -44,7 +46,7 @@ pub(super) fn weights(size: &SceneSize) -> [f64; PHASES] {
     ]
 }
 
-/// The size of a scene with what is not known of it yet.
+/// Returns the size of a scene, with estimates for its unknown parts.
 fn guessed(size: &SceneSize) -> SceneSize {
     if size.nodes > 0 {
         return *size;
@@ -55,15 +57,15 @@ fn guessed(size: &SceneSize) -> SceneSize {
     SceneSize { json, nodes, triangles, drawn: triangles.max(nodes * TRIANGLES_A_NODE), ..*size }
 }
 
-/// How far a scene is.
+/// Progress of loading a scene.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Progress {
     weights: [f64; PHASES],
     phase: usize,
-    /// When the first phase and this one began.
+    /// Start times of the first phase and of this one.
     start: Instant,
     since: Instant,
-    /// The share at which this phase began: it never falls.
+    /// Share at the start of this phase. The share never falls below it.
     least: f32,
 }
 
@@ -72,17 +74,17 @@ impl Progress {
         Self { weights: weights(&SceneSize::default()), phase: 0, start: now, since: now, least: 0.0 }
     }
 
-    /// A phase begins, with what is known of the scene's size by now.
+    /// Starts a phase, with the currently known size of the scene.
     pub(super) fn begin(&mut self, phase: usize, size: Option<&SceneSize>, now: Instant) {
         self.least = self.share(now);
         self.weights = size.map_or(self.weights, weights);
         (self.phase, self.since) = (phase.min(READY), now);
     }
 
-    /// Share of the time that has passed, 0..=1.
+    /// Returns the elapsed share of the time, 0..=1.
     pub(super) fn share(&self, now: Instant) -> f32 {
         let [before, after] = [self.end_of(self.phase.checked_sub(1)), self.end_of(Some(self.phase))];
-        // Times as long as on the machine that the weights are of.
+        // Duration relative to the machine of the weights.
         let spent = (self.since - self.start).as_secs_f64();
         let slowness = (spent + TOO_SHORT) / (before * self.sum() + TOO_SHORT);
         let expected = self.weights[self.phase] * slowness;
@@ -90,7 +92,7 @@ impl Progress {
         ((before + (after - before) * passed) as f32).max(self.least)
     }
 
-    /// Returns the bar of the rest of this phase.
+    /// Returns the bar for the rest of this phase.
     pub(super) fn ahead(&self, now: Instant) -> BusyBar {
         let (share, end) = (self.share(now), self.end_of(Some(self.phase)) as f32);
         let spent = (self.since - self.start).as_secs_f64();
@@ -99,7 +101,7 @@ impl Progress {
         BusyBar { from: share, to: end.max(share), seconds: (self.weights[self.phase] * slowness) as f32 }
     }
 
-    /// Share at which a phase ends; 0 before the first.
+    /// Returns the share at the end of a phase; 0 before the first.
     pub(super) fn end_of(&self, phase: Option<usize>) -> f64 {
         let done: f64 = phase.map_or(0.0, |phase| self.weights[..=phase].iter().sum());
         done / self.sum()
@@ -119,7 +121,8 @@ mod tests {
 
     use super::*;
 
-    /// What is told while a generated file of so many nodes is loaded, each a triangle.
+    /// Returns the reported steps and sizes while a generated file of `nodes` nodes is loaded, a triangle
+    /// each.
     fn told(nodes: usize) -> Vec<(usize, SceneSize)> {
         let triangle: Vec<u8> =
             [0.0_f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0].iter().flat_map(|x| x.to_le_bytes()).collect();
@@ -141,8 +144,8 @@ mod tests {
         told.into_inner()
     }
 
-    /// The shares that are shown at a thousand times, where each phase takes so many times its weight; each with the share
-    /// of the time.
+    /// Returns the displayed shares at a thousand times, each with the share of the time. Each phase takes
+    /// `slowness` times its weight.
     fn shown(told: &[(usize, SceneSize)], slowness: f64) -> Vec<(f64, f64)> {
         let [.., (_, size)] = told else { return Vec::new() };
         let took = weights(size).map(|seconds| seconds * slowness);

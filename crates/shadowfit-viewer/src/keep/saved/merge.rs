@@ -1,4 +1,4 @@
-//! What several viewers changed since they last knew the same, brought together item by item.
+//! Merges the changes of several viewers since their last common state, item by item.
 
 use shadowfit_params::PARAMETERS;
 use shadowfit_params::tool::Settings;
@@ -6,15 +6,15 @@ use shadowfit_params::tool::Settings;
 use super::Saved;
 
 impl Saved {
-    /// What to save where others wrote `theirs` since this viewer and the file had `known` in common: what this viewer
-    /// changed since, and else what they wrote.
+    /// Merges this state into `theirs`, which other viewers wrote since the common state `known`. This
+    /// viewer's changes since then override theirs.
     pub(crate) fn over(&self, known: &Self, theirs: Self) -> Self {
         let mut merged = theirs;
         if self.theme != known.theme {
             merged.theme = self.theme;
         }
         self.put_scene_over(known, &mut merged);
-        // Files are put in front as they are opened.
+        // Newly opened files are at the front.
         let opened = self.recent.iter().take_while(|path| known.recent.first() != Some(path));
         let opened: Vec<_> = opened.collect();
         opened.into_iter().rev().for_each(|path| merged.remember(path));
@@ -25,7 +25,7 @@ impl Saved {
         merged
     }
 
-    /// Scene and camera are one item. Where they become those of another scene, so do the settings.
+    /// Merges scene and camera, which are one item. If the scene changes, its settings replace the others.
     fn put_scene_over(&self, known: &Self, merged: &mut Self) {
         let is_other_scene = self.scene != merged.scene;
         let view = |saved: &Self| (saved.scene.clone(), saved.camera, saved.sample.clone());
@@ -44,8 +44,8 @@ impl Saved {
     }
 }
 
-/// In the order of the table, so that a choice comes before the parameters that exist only with it. A person did not
-/// change the angles of a sun that the file moves.
+/// Merges settings in table order, so that a choice comes before the parameters that depend on it. The angles
+/// of a sun that the file moves are not a user's change.
 fn put_settings_over(merged: &mut Settings, known: &Settings, ours: &Settings) {
     let is_moved = |id| ours.light.file.is_some() && ["light.azimuth", "light.elevation"].contains(&id);
     for parameter in PARAMETERS {
@@ -55,7 +55,7 @@ fn put_settings_over(merged: &mut Settings, known: &Settings, ours: &Settings) {
     }
 }
 
-/// Adds, replaces and deletes what differs between `known` and `ours`.
+/// Adds, replaces and deletes the items that differ between `known` and `ours`.
 fn put_items_over<T: Clone + PartialEq>(
     merged: &mut Vec<T>,
     known: &[T],

@@ -1,4 +1,5 @@
-//! Files that were chosen or dropped: a page has no others. They stay in memory until others are chosen.
+//! Files that the user chose or dropped, the only files of a page. They stay in memory until others are
+//! chosen.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -22,24 +23,24 @@ std::thread_local! {
     static FILES: RefCell<BTreeMap<String, Vec<u8>>> = const { RefCell::new(BTreeMap::new()) };
 }
 
-/// Forgets all files.
+/// Removes all files.
 pub(crate) fn clear() {
     FILES.with_borrow_mut(BTreeMap::clear);
 }
 
-/// Keeps a file under its name.
+/// Stores a file under its name.
 pub(crate) fn keep(name: String, bytes: Vec<u8>) {
     FILES.with_borrow_mut(|files| files.insert(name, bytes));
 }
 
-/// The content of a file.
+/// Returns the content of a file.
 pub(crate) fn read(path: &Path) -> Result<Vec<u8>> {
     let name = path.to_string_lossy();
     let found = FILES.with_borrow(|files| files.get(&*name).cloned());
-    found.with_context(|| format!("{name} is not there any more; choose it again"))
+    found.with_context(|| format!("{name} is no longer available; choose it again"))
 }
 
-/// The images of a file's scene, by their encoded bytes; or why the browser cannot decode one.
+/// The images of a file's scene, by their encoded bytes, each decoded or with the browser's error.
 type Images = BTreeMap<Vec<u8>, Result<DecodedImage, String>>;
 
 /// Has the browser decode the images of a file.
@@ -59,8 +60,8 @@ async fn decode(path: &Path) -> Images {
     images
 }
 
-/// Loads a scene of a file, with the files that were chosen together with it, and calls `progress` at each step. The browser
-/// decodes the images first.
+/// Loads a scene of a file with the files that were chosen together with it, and calls `progress` at each
+/// step. The browser decodes the images first.
 pub(crate) async fn load_gltf(
     path: &Path,
     scene: Option<usize>,

@@ -1,4 +1,4 @@
-//! The file of the viewer's state: a damaged one is renamed, and other viewers wait while one writes.
+//! The file of the viewer's state. A damaged file is renamed, and other viewers wait while one writes.
 
 use std::ffi::OsString;
 use std::fs::{self, File, TryLockError};
@@ -12,10 +12,10 @@ use shadowfit_study::{make_folder, write_whole};
 
 /// Longest wait for another viewer that writes the file: short enough that people rarely notice.
 const PATIENCE: Duration = Duration::from_millis(300);
-/// Time between two attempts meanwhile.
+/// Time between two attempts.
 const ASK_AGAIN: Duration = Duration::from_millis(10);
 
-/// The place of the viewer's state.
+/// The file of the viewer's state.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct StateFile {
     /// `None` if the system has no folder for settings.
@@ -38,20 +38,21 @@ impl StateFile {
         self.path.as_ref().map(|path| path.display().to_string())
     }
 
-    /// Reads the file. Returns `None` if it does not exist. The inner error says that its content is not text.
+    /// Reads the file. Returns `None` if it does not exist. The inner error means that its content is not
+    /// text.
     pub(crate) fn read(&self) -> io::Result<Option<Result<String>>> {
         let Some(path) = &self.path else { return Ok(None) };
         match fs::metadata(path) {
             Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
             Ok(there) if there.is_dir() => return Err(io::Error::other("it is a folder")),
             // Devices may have no end.
-            Ok(there) if !there.is_file() => return Err(io::Error::other("it is no ordinary file")),
+            Ok(there) if !there.is_file() => return Err(io::Error::other("it is not an ordinary file")),
             known => known?,
         };
-        Ok(Some(String::from_utf8(fs::read(path)?).context("it is no text")))
+        Ok(Some(String::from_utf8(fs::read(path)?).context("it is not text")))
     }
 
-    /// Runs `work` while no other viewer writes the file. Makes the file's folder first.
+    /// Runs `work` while no other viewer writes the file. Creates the file's folder first.
     pub(crate) fn locked<T>(&mut self, work: impl FnOnce(&mut Self) -> Result<T>) -> Result<T> {
         let parent = self.path.as_deref().and_then(Path::parent);
         make_folder(parent.unwrap_or(Path::new("")))?;
@@ -64,7 +65,7 @@ impl StateFile {
         self.path.as_ref().map_or(Ok(()), |path| write_whole(path, text.as_bytes()))
     }
 
-    /// Renames a damaged file. Returns a sentence about that, with the consequence `then`.
+    /// Renames a damaged file. Returns a sentence about it, with the consequence `then`.
     pub(crate) fn set_aside(&mut self, then: &str) -> String {
         let Some(path) = &mut self.path else { return String::new() };
         let aside = (1..=u16::MAX)
@@ -82,8 +83,9 @@ impl StateFile {
     }
 }
 
-/// Keeps other viewers from writing the file until the lock is dropped. Returns `None` if files cannot be locked, or
-/// another viewer holds the lock for too long: files are still written whole then, but may miss a change of that viewer.
+/// Locks the file against other viewers until the lock is dropped. Returns `None` if files cannot be locked,
+/// or another viewer holds the lock for too long. Then files are still written whole, but a change of that
+/// viewer may be lost.
 fn lock(path: &Path) -> Option<File> {
     let mut name = OsString::from(".");
     name.push(path.file_name()?);

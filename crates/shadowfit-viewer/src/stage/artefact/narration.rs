@@ -1,4 +1,4 @@
-//! Sentences that say what to look for in the picture of an artefact.
+//! Sentences that tell where to look in the picture of an artefact.
 
 use shadowfit::PerspectiveCamera;
 use shadowfit_egui::Artefact;
@@ -6,7 +6,7 @@ use shadowfit_params::tool::Settings;
 
 use super::view_search::{GRID, ViewSearch};
 
-/// The sentence about a view of an artefact.
+/// Returns the sentence about a view of an artefact.
 pub(crate) fn tell(
     artefact: Artefact,
     search: &ViewSearch<'_>,
@@ -19,29 +19,29 @@ pub(crate) fn tell(
     let Some(map) = fitted.read_at(search.world(seen.position.as_dvec3())) else { return String::new() };
     let fit = fitted.maps[map].projection;
     let texel = length(fit.texel_size.max_element());
-    // Pixels of a picture 720 high that the texel covers where it is looked at head-on.
+    // Pixels in a picture of height 720 that the texel covers if viewed head-on.
     let pixels = fit.texel_size.max_element() / (2.0 * (camera.fov_y * 0.5).tan() * seen.distance) * 720.0;
     match artefact {
         Artefact::Acne => format!(
             "Look for dark stripes on the sunlit side. A texel of map {} is {texel} wide here, and there is no bias: \
-             each stripe is half of a texel's patch that takes its own surface for a caster.",
+             in each stripe, half of a texel's area is behind the stored depth of its own surface.",
             map + 1
         ),
         Artefact::Aliasing => format!(
-            "Look at the stairs along the shadow's edge. A texel of map {} is {texel} wide and covers about {pixels:.0} \
-             pixels here; each stair is one texel.",
+            "Look at the stairs along the shadow's edge. A texel of map {} is {texel} wide and covers about \
+             {pixels:.0} pixels here; each stair is one texel.",
             map + 1
         ),
         Artefact::ClippingHole => {
             let is_left = search.holes(&search.shadowed(&picture), &fitted).contains(&Some(false));
             let [told, missing] = if is_left {
-                ["The shadow breaks off, though nothing ends there.", "the missing part"]
+                ["The shadow breaks off, though its caster continues.", "the missing part"]
             } else {
-                ["A shadow should fall here, and none is there.", "it"]
+                ["A shadow is missing here.", "this shadow"]
             };
             format!(
-                "{told} Map {} reaches {} along the light and no farther toward the sun than what the camera sees; what \
-                 throws {missing} stands outside its box, as the view from outside shows.",
+                "{told} Map {} reaches {} along the light, but toward the sun it ends with the camera's view. The \
+                 caster of {missing} lies outside its box, as the view from outside shows.",
                 map + 1,
                 length(fit.depth_range)
             )
@@ -49,7 +49,7 @@ pub(crate) fn tell(
     }
 }
 
-/// A length as people read it.
+/// Returns a length as text for people.
 fn length(metres: f32) -> String {
     match metres {
         m if m >= 1.0 => format!("{m:.1} m"),

@@ -1,5 +1,5 @@
-//! The search for views: casts coarse pictures of rays from candidate cameras, to find where an
-//! artefact shows. Positions are relative to the origin of the scene's rays, in metres.
+//! The search for views: casts coarse pictures of rays from candidate cameras, to find views that show an
+//! artefact. Positions are relative to the origin of the scene's rays, in metres.
 
 use glam::{DVec3, Vec3};
 use shadowfit::{Aabb, PerspectiveCamera, ShadowFitter, Technique};
@@ -11,9 +11,9 @@ use crate::stage::fitted::Fitted;
 
 /// Columns and rows of a candidate's coarse picture.
 pub(crate) const GRID: [u32; 2] = [32, 18];
-/// Light rays along each side of the square that is searched for shadows.
+/// Number of light rays along each side of the square that is searched for shadows.
 const LIGHT_GRID: i32 = 24;
-/// Least distance from caster to shadow that is worth showing, in radii of the searched bounds.
+/// Least distance from caster to shadow, in radii of the searched bounds.
 const LEAST_REACH: f32 = 0.02;
 /// Offset of shadow rays along the normal, as a share of the scene's size.
 const RAY_OFFSET: f32 = 1e-4;
@@ -34,7 +34,7 @@ pub(crate) struct Seen {
 pub(crate) struct Shadow {
     /// The point in shadow.
     pub(crate) receiver: Vec3,
-    /// How far toward the light the caster is, in metres.
+    /// Distance of the caster toward the light, in metres.
     pub(crate) reach: f32,
 }
 
@@ -56,8 +56,8 @@ impl<'a> ViewSearch<'a> {
         Self { scene, inputs, tracer: &scene.rays().tracer, direction, to_light: -direction, offset }
     }
 
-    /// The maps of a candidate, fitted as the viewer fits them to a view that the camera has just been set on; `None`
-    /// where nothing can be fitted.
+    /// Fits the maps of a candidate, as the viewer does after moving the camera to a new view; `None` if
+    /// fitting fails.
     pub(crate) fn fit(&self, technique: &Technique, camera: &PerspectiveCamera) -> Option<Fitted> {
         let camera = PerspectiveCamera { eye: self.world(camera.eye), ..*camera };
         let view = View { camera: camera.into(), direction: self.direction, is_first: true };
@@ -65,12 +65,12 @@ impl<'a> ViewSearch<'a> {
         Some(Fitted::new(camera, technique, &maps))
     }
 
-    /// World position of a point of the search.
+    /// Returns the world position of a point of the search.
     pub(crate) fn world(&self, point: DVec3) -> DVec3 {
         self.scene.origin() + point
     }
 
-    /// The coarse picture of a camera, rows from the top.
+    /// Returns the coarse picture of a camera, rows from the top.
     pub(crate) fn look(&self, camera: &PerspectiveCamera) -> Vec<Option<Seen>> {
         let right = camera.forward.cross(Vec3::Y).normalize_or(Vec3::X);
         let up = right.cross(camera.forward);
@@ -93,28 +93,28 @@ impl<'a> ViewSearch<'a> {
             .collect()
     }
 
-    /// Cosine between the normal of a visible surface and the light.
+    /// Returns the cosine between the normal of a visible surface and the direction toward the light.
     pub(crate) fn facing(&self, seen: &Seen) -> f32 {
         seen.normal.dot(self.to_light)
     }
 
-    /// Whether a seen point is in shadow.
+    /// Returns whether a visible point is in shadow.
     pub(crate) fn is_shadowed(&self, seen: &Seen) -> bool {
         self.tracer.is_occluded(seen.position + seen.normal * self.offset, self.to_light)
     }
 
-    /// The points of a coarse picture that face the light and are in shadow.
+    /// Returns the points of a coarse picture that face the light and are in shadow.
     pub(crate) fn shadowed<'p>(&self, pixels: &'p [Option<Seen>]) -> Vec<Option<&'p Seen>> {
         let is_shadowed = |seen: &&Seen| self.facing(seen) > 0.0 && self.is_shadowed(seen);
         pixels.iter().map(|seen| seen.as_ref().filter(is_shadowed)).collect()
     }
 
-    /// The points in shadow that lie in a hole.
+    /// Returns for each point in shadow whether it lies in a hole.
     pub(crate) fn holes(&self, shadowed: &[Option<&Seen>], fitted: &Fitted) -> Vec<Option<bool>> {
         shadowed.iter().map(|seen| seen.map(|seen| self.is_hole(seen, fitted))).collect()
     }
 
-    /// Whether a seen point is in shadow by casters that are all outside the map that it reads.
+    /// Returns whether all casters of a visible point's shadow are outside the map that it reads.
     fn is_hole(&self, seen: &Seen, fitted: &Fitted) -> bool {
         let origin = seen.position + seen.normal * self.offset;
         let Some(map) = fitted.read_at(self.world(origin.as_dvec3())) else { return false };
@@ -124,8 +124,8 @@ impl<'a> ViewSearch<'a> {
         !hits.is_empty() && !hits.iter().any(|hit| inside(hit.distance))
     }
 
-    /// Shadows that casters inside `bounds` throw on receivers that face the light, in the order of
-    /// the search.
+    /// Returns the shadows that casters inside `bounds` cast on surfaces that face the light, in search
+    /// order.
     pub(crate) fn shadows(&self, bounds: &Aabb) -> Vec<Shadow> {
         let center = (bounds.min + bounds.max) * 0.5;
         let radius = (bounds.max - bounds.min).length() * 0.5;
@@ -140,7 +140,7 @@ impl<'a> ViewSearch<'a> {
             .collect()
     }
 
-    /// The shadow that a caster within `radius` of `middle` throws on the next surface behind it
+    /// Returns the shadow of the first caster within `radius` of `middle` on the farthest surface behind it
     /// that faces the light.
     fn shadow_along(&self, middle: Vec3, radius: f32) -> Option<Shadow> {
         let start = middle + self.to_light * radius;
@@ -154,7 +154,7 @@ impl<'a> ViewSearch<'a> {
     }
 }
 
-/// A camera at `eye` that looks at `target`, with the lens of another.
+/// Returns a camera at `eye` that looks at `target`, with the lens of another.
 pub(crate) fn aimed(lens: &PerspectiveCamera, eye: Vec3, target: Vec3) -> PerspectiveCamera {
     let forward = (target - eye).normalize_or(Vec3::NEG_Z);
     PerspectiveCamera { eye: DVec3::from(eye), forward, ..*lens }

@@ -1,4 +1,4 @@
-//! The pictures of a side: fitted, judged and drawn as the view asks.
+//! The pictures of a side: fitted, judged and drawn for the chosen view.
 
 use shadowfit::{Camera, FittedMap, PerspectiveCamera, VisibleDemand};
 use shadowfit_params::tool::{ErrorMarks, InsetMaps, Settings, ViewMode};
@@ -12,7 +12,7 @@ use crate::stage::fitted::Fitted;
 use crate::stage::shot::Shot;
 use crate::stage::{boards, demand_view, inset, outside};
 
-/// All that a picture depends on.
+/// Everything that a picture depends on.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct PictureKey {
     settings: Settings,
@@ -25,15 +25,15 @@ pub(super) struct PictureKey {
     target: wgpu::Texture,
 }
 
-/// A view and the maps that it is drawn with.
+/// A view and its maps.
 struct Plan<'a> {
     view: View,
     maps: &'a [FittedMap],
-    /// Whether the maps were drawn for the judge already.
+    /// Whether the maps were already drawn for the judge.
     maps_stay: bool,
 }
 
-/// Why edges are filtered, where the technique traces them.
+/// Returns why edges are filtered although the technique traces them.
 pub(in crate::stage) fn filtered_edges(settings: &Settings, result: EdgeOutcome) -> Option<String> {
     let wants = settings.technique.edges.are_traced() && settings.view.shadows;
     let EdgeOutcome::Filtered(why) = result else { return None };
@@ -41,7 +41,7 @@ pub(in crate::stage) fn filtered_edges(settings: &Settings, result: EdgeOutcome)
 }
 
 impl Side {
-    /// Fits, judges and draws the view that the settings ask for.
+    /// Fits, judges and draws the view of the settings.
     pub(in crate::stage) fn draw(&mut self, shot: &mut Shot<'_>, target: &RenderTarget) {
         self.problem = None;
         self.evaluator.judging.ray_offset = shot.ray_offset();
@@ -51,11 +51,11 @@ impl Side {
             self.problem.take().or_else(|| filtered_edges(shot.settings, result)).or_else(|| self.live.notice());
     }
 
-    /// Draws the view unless it would be as it was last.
+    /// Draws the view unless it would equal the last picture.
     fn draw_anew(&mut self, shot: &mut Shot<'_>, target: &RenderTarget) {
         let fitted = self.fit(shot);
         let seen = shot.view();
-        // A frozen fit was made for another camera, whose view depths may still choose among its maps.
+        // A frozen fit was made for another camera, whose view depths may still select among its maps.
         let view = View { camera: fitted.camera.unwrap_or(seen.camera), ..seen };
         let is_frozen = view.camera != seen.camera;
         let mut maps_stay = false;
@@ -85,8 +85,8 @@ impl Side {
         }
     }
 
-    /// What a whole picture is made from, where pictures are made one by one: the same once more would only take time.
-    /// Views that show how the maps themselves were found or drawn go by more than that.
+    /// Returns everything that a whole picture depends on, if pictures are made one by one, so that an equal
+    /// picture is not drawn again. Views that show how the maps were found or drawn depend on more, and return `None`.
     fn picture_key(&self, shot: &Shot<'_>, maps: &[FittedMap], target: &RenderTarget) -> Option<PictureKey> {
         let is_known = !matches!(shot.settings.view.mode, ViewMode::Demand | ViewMode::Updates);
         let is_alone = self.live.waits && !self.follows && shot.scissor.is_none();
@@ -117,7 +117,7 @@ impl Side {
             scissor: shot.scissor,
             ..plan.view.frame(plan.maps, &atmosphere)
         };
-        // Maps that are themselves looked at from elsewhere hold all their casters, not only those of this picture's
+        // Maps that are viewed by another camera hold all their casters, not only those of this picture's
         // shadows.
         let frame = if plan.view.camera == shot.camera {
             frame
@@ -135,8 +135,8 @@ impl Side {
         }
     }
 
-    /// Draws the camera, its maps and their casters, from outside. `maps_stay` where the maps were just drawn for the
-    /// camera itself.
+    /// Draws the camera, its maps and their casters from outside. `maps_stay` means that the maps were just
+    /// drawn for the camera itself.
     pub(in crate::stage) fn draw_outside(
         &mut self,
         shot: &mut Shot<'_>,
@@ -189,11 +189,12 @@ impl Side {
         self.take_statistics(drawn);
     }
 
-    /// Draws all maps side by side, with the parts that were redrawn.
+    /// Draws all maps side by side, with the redrawn parts.
     fn draw_boards(&mut self, shot: &mut Shot<'_>, plan: &Plan<'_>, target: &RenderTarget) {
         let bounds = shot.scene.bounds();
         let boards = boards::Boards::new(plan.maps, &bounds, shot.settings.view.inset_depths, target.size);
-        // The updates of the frame before, unless the maps stay: those of this frame are known only after it is drawn.
+        // The updates of the previous frame, unless the maps stay. The updates of this frame are known only
+        // after it is drawn.
         let quads = boards.quads(&self.sun().updates());
         let atmosphere = atmosphere(shot.sight);
         let frame = Frame {
@@ -208,7 +209,7 @@ impl Side {
     }
 }
 
-/// Returns the marks of wrong pixels that the settings ask for.
+/// Returns the marks of wrong pixels in the settings.
 fn marks_of(shot: &Shot<'_>) -> Option<Marks> {
     let marks = shot.settings.view.marks;
     (marks != ErrorMarks::Off).then(|| Marks {
@@ -218,7 +219,7 @@ fn marks_of(shot: &Shot<'_>) -> Option<Marks> {
     })
 }
 
-/// Returns the insets that the settings ask for, in a picture of `size` pixels.
+/// Returns the insets in the settings, in a picture of `size` pixels.
 fn insets_of(shot: &Shot<'_>, maps: &[FittedMap], size: [u32; 2]) -> Vec<Inset> {
     let settings = &shot.settings.view;
     let shown = match settings.inset {

@@ -12,12 +12,12 @@ use crate::stage::shot::Shot;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct NoRoom {
     refused: ShadowMapDescriptor,
-    /// The maps that were made instead.
+    /// The maps made instead.
     smaller: ShadowMapDescriptor,
 }
 
-/// Makes a shadow map. If the device has no memory for it, tries half of the texels per side, a quarter, and so on. Returns
-/// the descriptor of the map that was made, too.
+/// Makes a shadow map. If the device has no memory for it, tries half of the texels per side, a quarter, and
+/// so on. Also returns the descriptor of the map that was made.
 pub(super) fn within_memory<T>(
     wanted: &ShadowMapDescriptor,
     mut make: impl FnMut(&ShadowMapDescriptor) -> Result<T, ShadowMapError>,
@@ -35,12 +35,12 @@ pub(super) fn within_memory<T>(
 }
 
 impl Side {
-    /// The technique of the settings, with its shadow map recreated as needed. Where that is impossible, the old one
-    /// stays in use, and [`Self::problem`] says why.
+    /// Returns the technique of the settings, with its shadow map recreated as needed. If that is impossible,
+    /// the old map stays in use, and [`Self::problem`] gives the reason.
     pub(super) fn drawable_technique(&mut self, shot: &Shot<'_>) -> Technique {
         let mut technique = shot.settings.technique;
         if technique.fit.depth == DepthConvention::NegativeOneToOne {
-            self.problem = Some("depth -1 to 1 is OpenGL's: wgpu draws the map with 0 to 1 instead".to_owned());
+            self.problem = Some("depth -1 to 1 belongs to OpenGL: wgpu draws the map with 0 to 1 instead".to_owned());
             technique.fit.depth = DepthConvention::ZeroToOne;
         }
         let wanted = ShadowMapDescriptor::from(&technique);
@@ -49,7 +49,7 @@ impl Side {
         self.problem = Some(match error {
             ShadowMapError::OutOfMemory { .. } => {
                 let [width, height] = map.resolution;
-                format!("{error}. They are drawn with {width} × {height} texels: choose that to keep it")
+                format!("{error}. They are drawn with {width} × {height} texels: choose that resolution to keep it")
             }
             _ => error.to_string(),
         });
@@ -62,9 +62,9 @@ impl Side {
         technique
     }
 
-    /// Sets the shadow map. Where there is no memory for it, the next smaller one is set, and the error says so.
+    /// Sets the shadow map. If there is no memory for it, sets the next smaller one and returns an error.
     fn set_shadow_map(&mut self, gpu: &Gpu, wanted: &ShadowMapDescriptor) -> Result<(), ShadowMapError> {
-        // A refused map is not tried again in each frame.
+        // A rejected map is not tried again in each frame.
         let first =
             self.no_room.filter(|no_room| no_room.refused == *wanted).map_or(*wanted, |no_room| no_room.smaller);
         let renderer = &mut self.evaluator.renderer;

@@ -1,11 +1,11 @@
-//! The bars above and below the picture: each control is found by its name and does what it says.
+//! The bars above and below the picture: each control is found by its name and works.
 
 use egui::accesskit::{Node, Role};
 use egui::{Event, Modifiers, PlatformOutput, PointerButton};
 
 use super::*;
 
-/// Wide enough for bars of one line each.
+/// Wide enough for each bar to fit into one line.
 const WIDE: [f32; 2] = [1280.0, 400.0];
 
 fn wide_frame(viewer: &mut Viewer, events: Vec<Event>) -> PlatformOutput {
@@ -14,7 +14,7 @@ fn wide_frame(viewer: &mut Viewer, events: Vec<Event>) -> PlatformOutput {
     viewer.frame(input, FRAME).1
 }
 
-/// Middle of the control with a name, and its role.
+/// Returns the middle of the control with a name, and its role.
 fn control(viewer: &mut Viewer, name: &str) -> Option<(Pos2, Role)> {
     let update = wide_frame(viewer, Vec::new()).accesskit_update.expect("names are told");
     let is_it = |node: &&Node| node.label() == Some(name);
@@ -39,7 +39,7 @@ fn click(viewer: &mut Viewer, name: &str, to_the_right: f32) {
 fn with_names() -> Viewer {
     let mut viewer = ready(&[], None);
     viewer.interface.context.enable_accesskit();
-    // The window was narrow until now, and had other bars.
+    // The window was narrow until now, with other bars.
     (0..3).for_each(|_| drop(wide_frame(&mut viewer, Vec::new())));
     viewer
 }

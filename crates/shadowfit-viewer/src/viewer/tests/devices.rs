@@ -1,4 +1,5 @@
-//! Devices that are lost: in each view, beside a second technique, while a scene is loaded, in a sample, and again.
+//! Lost devices: in each view, with a second technique, while a scene is loading, in a sample, and
+//! repeatedly.
 
 use shadowfit_testing::open_renderer_gpu;
 
@@ -9,7 +10,7 @@ fn ready(arguments: &[&str]) -> Viewer {
     loaded(viewer_on(open_renderer_gpu(), arguments, None))
 }
 
-/// Loses the device, draws a frame with what is left of it, and goes on with another one.
+/// Loses the device, draws a frame with the lost one, and continues with another one.
 fn lose(viewer: &mut Viewer) {
     let gpu = viewer.stage.gpu().clone();
     gpu.keep_faults();
@@ -36,7 +37,7 @@ fn gpu_a_lost_device_takes_nothing_along_in_any_view() {
     let (settings, camera) = (viewer.stage.settings, viewer.stage.camera);
     let before = picture(&mut viewer);
     lose(&mut viewer);
-    assert!(viewer.message.as_ref().is_some_and(|message| message.text.contains("made anew")));
+    assert!(viewer.message.as_ref().is_some_and(|message| message.text.contains("replaced")));
     assert_eq!((viewer.stage.settings, viewer.stage.camera), (settings, camera));
     assert!(picture(&mut viewer) == before, "the picture is another one");
     for mode in ViewMode::ALL {

@@ -1,4 +1,4 @@
-//! Links: another viewer that follows one shows the same.
+//! Links: another viewer that follows a link shows the same state.
 
 use glam::DVec3;
 
@@ -7,7 +7,7 @@ use crate::keep::link::Link;
 use crate::keep::undo::State;
 use crate::stage::ArtefactShow;
 
-/// A second viewer that has followed the link of the first one.
+/// Returns a second viewer that has followed the link of the first one.
 fn follower(first: &Viewer, arguments: &[&str]) -> Viewer {
     let fragment = first.link().to_fragment();
     let mut second = ready(arguments, None);
@@ -19,7 +19,7 @@ fn follower(first: &Viewer, arguments: &[&str]) -> Viewer {
 
 fn assert_same(first: &Viewer, second: &Viewer) {
     let fragment = first.link().to_fragment();
-    // Of the settings from before an artefact only those matter that it changed.
+    // Only the settings that the artefact changed matter.
     let state = |viewer: &Viewer| State { artefact: ArtefactShow::default(), ..viewer.state() };
     assert_eq!(state(first), state(second), "{fragment}");
     let [a, b] = [&first.stage, &second.stage];
@@ -92,7 +92,7 @@ fn gpu_an_artefact_comes_back_with_its_card_shown_and_fixed() {
     let mut second = follower(&first, &["plain"]);
     assert_same(&first, &second);
     assert!(!second.stage.cure_changes().is_empty() && second.stage.narration().contains("texel"));
-    // What was before it is known, too.
+    // The state before it is known, too.
     for viewer in [&mut first, &mut second] {
         run(viewer, Command::ShowArtefact(Artefact::Aliasing));
         until(viewer, "aliasing", |viewer| viewer.stage.shown().is_some_and(|shown| !shown.fixed));
@@ -113,7 +113,7 @@ fn gpu_a_sample_comes_back_in_its_variant_with_its_options() {
     assert_same(&first, &follower(&first, &["--sample", "xna-shadow-mapping/acne"]));
 }
 
-/// A scene of a triangle as a file.
+/// Writes a scene of one triangle as a file.
 fn write_scene(path: &Path) {
     let gltf = r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
         "meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
@@ -138,7 +138,7 @@ fn gpu_a_link_of_a_file_asks_for_it_and_waits() {
     assert!(fragment.contains("file=my%20town.gltf&") && !fragment.contains("here"), "{fragment}");
     let mut second = ready(&["--link", &format!("https://example.org/{fragment}")], None);
     let request = |viewer: &Viewer| viewer.link.as_ref().and_then(|link| link.scene.request());
-    assert_eq!(request(&second).as_deref(), Some("This link is of my town.gltf: drop that file here"));
+    assert_eq!(request(&second).as_deref(), Some("This link needs my town.gltf: drop that file here"));
     run(&mut second, Command::Open("plain".to_owned()));
     until(&mut second, "another scene", |viewer| viewer.loading.is_none());
     assert!(request(&second).is_some(), "it still waits");
@@ -190,7 +190,7 @@ fn gpu_a_page_copies_links_and_cannot_be_quit() {
     assert_eq!(output.commands, [egui::OutputCommand::CopyText(expected)]);
 }
 
-/// A scene of a triangle with two cameras, the second one rolled, and two suns, as a file.
+/// Writes a scene of one triangle with two cameras, the second one rolled, and two suns, as a file.
 fn write_views(path: &Path) {
     let gltf = r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0,1,2,3,4]}],
         "nodes":[{"mesh":0},{"camera":0,"translation":[0.5,0.3,3]},
@@ -259,7 +259,7 @@ fn gpu_arguments_and_links_choose_a_camera_with_its_lens_and_may_change_that() {
         run(&mut first, Command::Reset);
         frame(&mut first);
     }
-    // As a perspective, the second camera has the same field of view as the first one.
+    // As a perspective camera, the second camera has the field of view of the first one.
     for height in ["5", "perspective"] {
         set(&mut first, "camera.height", height);
         let link = first.link();

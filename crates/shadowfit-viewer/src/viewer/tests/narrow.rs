@@ -1,4 +1,4 @@
-//! Windows as narrow or as low as those of phones: nothing lies outside, and the picture keeps most of the height.
+//! Windows as narrow or as low as on phones: nothing lies outside, and the picture gets most of the height.
 
 use egui::accesskit::{Node, Role};
 use egui::{Event, Modifiers, PointerButton};
@@ -9,12 +9,12 @@ use super::*;
 const UPRIGHT: [f32; 2] = [390.0, 844.0];
 const LYING: [f32; 2] = [844.0, 390.0];
 
-/// Draws a frame in a window of a size; returns the name, role and place of each control.
+/// Draws a frame in a window of a size. Returns the name, role and place of each control.
 fn draw(viewer: &mut Viewer, size: [f32; 2], events: Vec<Event>) -> Vec<(String, Role, Rect)> {
     draw_after(viewer, size, FRAME, events)
 }
 
-/// Draws a frame as [`draw`] does, a number of seconds after the previous frame.
+/// Draws a frame like [`draw`], a number of seconds after the previous frame.
 fn draw_after(viewer: &mut Viewer, size: [f32; 2], seconds: f32, events: Vec<Event>) -> Vec<(String, Role, Rect)> {
     let screen_rect = Some(Rect::from_min_size(Pos2::ZERO, vec2(size[0], size[1])));
     let input = RawInput { screen_rect, time: Some(viewer.clock), events, ..Default::default() };
@@ -101,7 +101,7 @@ fn gpu_the_drawer_opens_and_closes_by_its_button_beside_it_and_by_escape() {
         assert!(is_open(&mut viewer), "{way}");
         let panel = find(&draw(&mut viewer, UPRIGHT, Vec::new()), "Panel").expect("a panel");
         assert!(panel.width() <= 0.9 * UPRIGHT[0] + 0.5 && panel.height() >= UPRIGHT[1] - 1.0, "{panel:?}");
-        // Between its controls nothing closes it.
+        // A click between its controls does not close it.
         click_at(&mut viewer, UPRIGHT, panel.left_top() + vec2(3.0, 3.0));
         assert!(is_open(&mut viewer));
         match way {
@@ -139,7 +139,7 @@ fn gpu_every_control_of_the_panel_is_reached_by_scrolling() {
         let step = 0.4 * size[1];
         for _ in 0..(2500.0 / step) as u32 {
             let controls = draw(&mut viewer, size, vec![Event::PointerMoved(inside), wheel(-step)]);
-            // One second: the panel comes to rest.
+            // One second, until the panel stops scrolling.
             (0..2).for_each(|_| drop(draw_after(&mut viewer, size, 0.5, Vec::new())));
             assert_inside(&controls, size);
             let is_whole = |rect: &Rect| rect.top() >= 0.0 && rect.bottom() <= size[1];

@@ -1,4 +1,5 @@
-//! Classic samples in the viewer: their controls, options and variants, what is kept of them, and what does not apply.
+//! Classic samples in the viewer: their controls, options and variants, their saved state, and commands that
+//! do not apply.
 
 use egui::Key;
 use glam::{DVec3, Vec3};
@@ -12,7 +13,7 @@ fn values(viewer: &Viewer) -> &SampleValues {
     &viewer.stage.sample().expect("a sample").values
 }
 
-/// Draws a frame in which a key is pressed or released.
+/// Draws a frame with a press or release of a key.
 fn key(viewer: &mut Viewer, key: Key, pressed: bool) {
     let modifiers = egui::Modifiers::NONE;
     let event = egui::Event::Key { key, physical_key: None, pressed, repeat: false, modifiers };
@@ -42,14 +43,14 @@ fn gpu_the_xna_sample_has_the_controls_of_its_source() {
     hold(&mut viewer, Key::ArrowLeft, 15);
     let turned = viewer.stage.camera.yaw - start.yaw;
     assert!((turned - 0.5).abs() < 0.01, "{turned}");
-    // Q and E turn the model 200 degrees a second, a whole turn in 1.8, and leave the camera where it is.
+    // Q and E turn the model by 200 degrees a second, a whole turn in 1.8 s, and do not move the camera.
     let (place, seconds) = (viewer.stage.camera, viewer.stage.seconds());
     hold(&mut viewer, Key::E, 15);
     assert_eq!(viewer.stage.camera, place);
     assert!((viewer.stage.seconds() - seconds - 0.5).abs() < 0.01, "{}", viewer.stage.seconds());
     hold(&mut viewer, Key::Q, 15);
     assert!((viewer.stage.seconds() - seconds).abs() < 0.01 || (viewer.stage.seconds() - 1.8).abs() < 0.01);
-    // R is the source's.
+    // R has the source's action.
     key(&mut viewer, Key::R, true);
     let camera = viewer.stage.camera;
     assert_eq!(camera.position, DVec3::new(0.0, 50.0, 50.0));
@@ -75,7 +76,7 @@ fn gpu_a_sample_with_its_options_and_camera_comes_back() {
     assert_eq!((values(&second).get("bias"), values(&second).choice("format")), (0.004, "r16f"));
     assert!((second.stage.camera.position - camera.position).length() < 1e-6);
     drop(second);
-    // Arguments win over what was kept, and another scene has none of it.
+    // Arguments override saved state, and other scenes ignore it.
     let third = ready(&["--sample", XNA, "--set", "sample.bias=0"], Some(&path));
     assert_eq!((values(&third).get("bias"), values(&third).choice("format")), (0.0, "r32f"));
     drop(third);

@@ -1,4 +1,4 @@
-//! What belongs to a scene and ends with it.
+//! State that belongs to a scene and ends with it.
 
 use super::*;
 

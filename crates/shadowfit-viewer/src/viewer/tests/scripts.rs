@@ -1,8 +1,8 @@
-//! What comes of a script's lines, those that cannot be done among them.
+//! Effects of a script's lines, including lines that fail.
 
 use super::*;
 
-/// Plays a script that stands in a folder.
+/// Plays a script in a folder.
 fn play(folder: &Path, text: &str) -> Viewer {
     let path = folder.join("script.txt");
     std::fs::write(&path, text).expect("written");

@@ -1,8 +1,8 @@
-//! Two techniques: what is changed is the one that the panel edits.
+//! Two techniques: changes apply to the one that the panel edits.
 
 use super::*;
 
-/// A viewer that compares two techniques, of which the panel edits B.
+/// Returns a viewer that compares two techniques. The panel edits B.
 fn on_b() -> Viewer {
     let mut viewer = ready(&["--technique", "xna-1"], None);
     run(&mut viewer, Command::Compare(Toggle::On));

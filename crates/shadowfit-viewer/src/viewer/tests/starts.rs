@@ -1,13 +1,13 @@
-//! How the viewer starts when something is wrong with what was saved or asked for.
+//! Starts with invalid saved state or arguments.
 
 use super::*;
 
-/// The message on show.
+/// Returns the current message.
 fn message(viewer: &Viewer) -> &str {
     viewer.message.as_ref().map_or("", |message| &message.text)
 }
 
-/// A file of the last time with a scene and practical splits.
+/// Writes saved state with a scene and practical splits.
 fn saved(folder: &Path, scene: &str) -> std::path::PathBuf {
     let path = folder.join("viewer.toml");
     let scene = toml::Value::from(scene);

@@ -1,4 +1,4 @@
-//! Fingers on the picture, as windows tell them: touches, of which the first is a pointer as well.
+//! Fingers on the picture, as windows report them: touches, the first of which is a pointer as well.
 
 use egui::{Event, Modifiers, PointerButton, TouchDeviceId, TouchId, TouchPhase};
 use glam::{DVec3, Vec3};
@@ -9,7 +9,7 @@ fn touch(id: u64, phase: TouchPhase, pos: Pos2) -> Event {
     Event::Touch { device_id: TouchDeviceId(0), id: TouchId(id), phase, pos, force: None }
 }
 
-/// The events of the first finger, which is a pointer as well.
+/// Returns the events of the first finger, which is a pointer as well.
 fn first(phase: TouchPhase, pos: Pos2) -> Vec<Event> {
     let button =
         |pressed| Event::PointerButton { pos, button: PointerButton::Primary, pressed, modifiers: Modifiers::NONE };
@@ -42,7 +42,7 @@ fn gpu_one_finger_takes_the_picture_with_it() {
     assert!((after.yaw - before.yaw - 0.2).abs() < 1e-3, "{} and {}", before.yaw, after.yaw);
 }
 
-/// Where the eye goes when two fingers go from places to others, in the directions of the camera.
+/// Moves two fingers, and returns the movement of the eye along the camera's axes.
 fn two_fingers(viewer: &mut Viewer, from: [Pos2; 2], to: [Pos2; 2]) -> Vec3 {
     let before = viewer.stage.camera;
     frame_with(viewer, first(TouchPhase::Start, from[0]));
@@ -101,7 +101,7 @@ fn gpu_a_finger_beside_the_bar_between_a_and_b_drags_it() {
     let mut viewer = ready(&[], None);
     run(&mut viewer, Command::Compare(Toggle::On));
     (0..3).for_each(|_| frame(&mut viewer));
-    // The first touch tells that there are fingers.
+    // The first touch reveals a touch screen.
     tap(&mut viewer, AT);
     let before = viewer.stage.camera;
     let bar = Pos2::new(320.0 + 14.0, 180.0);
