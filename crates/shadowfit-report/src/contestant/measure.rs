@@ -250,6 +250,7 @@ impl<C: Contestant> Stage<'_, C> {
         let is_missed = |point: &&TruthPoint| point.is_judged && !maps.holds(point.position, point.view_depth);
         let missed = truth.points.iter().flatten().filter(is_missed).count();
         let mut sums = Sums { tally: judged.tally.clone(), missed: missed as u64 };
+        sums.tally.add_flip(surfaces.flip(factors));
         if let Some(before) = before {
             let crawl = self.crawl(shown, surfaces, &Found { judged, factors }, before)?;
             if let Some(crawl) = &crawl {

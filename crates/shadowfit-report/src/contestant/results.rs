@@ -11,9 +11,10 @@ use crate::peers::Frame;
 use crate::run::{Columns, FrameInfo, Run, TechniqueRun};
 
 /// Columns of the Markdown tables. JSON and pages have all columns.
-const COLUMNS: [&str; 9] = [
+const COLUMNS: [&str; 10] = [
     "wrong %",
     "light error %",
+    "flip",
     "crawl %",
     "change %",
     "hole %",

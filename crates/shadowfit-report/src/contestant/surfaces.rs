@@ -3,7 +3,7 @@
 
 use anyhow::{Result, ensure};
 use glam::DVec3;
-use shadowfit_truth::{PixelCamera, Tracer, Truth, TruthSettings};
+use shadowfit_truth::{FlipReference, PixelCamera, Tracer, Truth, TruthPoint, TruthSettings};
 
 use crate::peers::Frame;
 
@@ -36,6 +36,8 @@ pub(super) struct Surfaces {
     pub(super) unshadowed: Option<Vec<f32>>,
     /// The same picture with maps selected by the view depths of the previous frame.
     pub(super) unshadowed_before: Option<Vec<f32>>,
+    /// White surfaces under the sun alone, with true shadows.
+    reference: FlipReference,
     /// Share of pixels that are left out, 0..=1, because the picture and rays show different surfaces.
     pub(super) different: f64,
 }
@@ -73,7 +75,13 @@ impl Surfaces {
         }
         let settings = TruthSettings { max_distance: frame.far, ..TruthSettings::new(frame.to_light()) };
         let truth = Truth::trace(tracer, &camera, &settings, &seen);
-        Ok(Self { truth, unshadowed, unshadowed_before: None, different })
+        let reference = FlipReference::new(&white(&truth, |_, point| point.lit), size);
+        Ok(Self { truth, unshadowed, unshadowed_before: None, reference, different })
+    }
+
+    /// Returns the mean ꟻLIP error of white surfaces under the sun alone with these shadow factors.
+    pub(super) fn flip(&self, factors: &[f32]) -> f64 {
+        self.reference.mean_error(&white(&self.truth, |pixel, _| factors[pixel]))
     }
 
     /// Adds the picture without shadows whose maps are selected by the view depths of the previous frame.
@@ -89,6 +97,21 @@ impl Surfaces {
         ensure!(share <= MAX_DIFFERENT, "with the view depths of the frame before, {percent:.1}% of the pixels differ");
         Ok(Self { unshadowed_before: Some(unshadowed), ..self })
     }
+}
+
+/// Returns sRGB pixels of white surfaces under the sun alone. `factor` returns the share of the light at a pixel.
+/// Pixels that are not judged are black.
+fn white(truth: &Truth, factor: impl Fn(usize, &TruthPoint) -> f32) -> Vec<u8> {
+    let of_pixel = |(pixel, point): (usize, &Option<TruthPoint>)| {
+        let light = point.filter(|point| point.is_judged).map_or(0.0, |point| {
+            let factor = factor(pixel, &point);
+            if factor.is_nan() { 0.0 } else { point.facing * f64::from(factor.clamp(0.0, 1.0)) }
+        });
+        let encoded = if light <= 0.003_130_8 { 12.92 * light } else { 1.055 * light.powf(1.0 / 2.4) - 0.055 };
+        let byte = (255.0 * encoded).round() as u8;
+        [byte, byte, byte, 255]
+    };
+    truth.points.iter().enumerate().flat_map(of_pixel).collect()
 }
 
 /// Returns the share of the light that reaches each pixel, 0..=1: the brightness with shadows over that without.

@@ -189,6 +189,9 @@ fn results_become_tables_json_and_the_run_of_a_page() {
     assert!(text.contains("\n## box\n") && text.contains("| no shadows |"), "{text}");
     assert!(!results.to_markdown(None).contains("x no shadows"));
     let json = results.to_json(&serde_json::json!({ "every": 1 }));
+    let flip = |technique: usize| json["fits"][technique]["overall"]["columns"]["flip"].as_f64().expect("a number");
+    assert_eq!(flip(RAYS), 0.0, "true shadows look like true shadows");
+    assert!(flip(NO_SHADOWS) > 0.01, "{}", flip(NO_SHADOWS));
     assert_eq!(json["fits"][RAYS]["groups"]["box/45"]["columns"]["wrong %"], 0.0);
     assert_eq!(json["fits"][NO_SHADOWS]["fit"], "no shadows");
     let run = results.to_run(RunFacts { title: "A box".into(), size: SIZE, ..RunFacts::default() });
