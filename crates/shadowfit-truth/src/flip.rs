@@ -55,7 +55,6 @@ type Channel = Vec<f32>;
 pub struct FlipReference {
     seen: Seen,
     size: [u32; 2],
-    pixels_per_degree: f64,
 }
 
 impl FlipReference {
@@ -66,8 +65,7 @@ impl FlipReference {
     ///
     /// If the picture has another number of bytes than `size` needs.
     pub fn new(picture: &[u8], size: [u32; 2]) -> Self {
-        let pixels_per_degree = PIXELS_PER_DEGREE;
-        Self { seen: Seen::new(picture, size, pixels_per_degree), size, pixels_per_degree }
+        Self { seen: Seen::new(picture, size), size }
     }
 
     /// Returns the ꟻLIP error of each pixel of another picture of the same size, 0 (equal) to 1.
@@ -76,7 +74,7 @@ impl FlipReference {
     ///
     /// If the picture has another number of bytes than the reference.
     pub fn errors(&self, picture: &[u8]) -> Vec<f32> {
-        let (reference, test) = (&self.seen, Seen::new(picture, self.size, self.pixels_per_degree));
+        let (reference, test) = (&self.seen, Seen::new(picture, self.size));
         let largest = largest_color_difference();
         let error = |pixel: usize| {
             let color = hyab(&reference.lab[pixel], &test.lab[pixel]).powf(COLOR_EXPONENT);
@@ -110,7 +108,7 @@ struct Seen {
 }
 
 impl Seen {
-    fn new(picture: &[u8], [width, height]: [u32; 2], pixels_per_degree: f64) -> Self {
+    fn new(picture: &[u8], [width, height]: [u32; 2]) -> Self {
         let size = [width as usize, height as usize];
         assert_eq!(picture.len(), size[0] * size[1] * 4, "four bytes for each pixel");
         assert!(!picture.is_empty(), "a picture has pixels");
@@ -119,17 +117,12 @@ impl Seen {
         let opponent: Vec<[f32; 3]> = picture.par_chunks_exact(4).map(opponent).collect();
         let [luminance, red_green, blue_yellow] =
             [0, 1, 2].map(|channel| opponent.par_iter().map(|color| color[channel]).collect::<Channel>());
-        let filter = |channel: &Channel, sensitivity: &[Gaussian]| {
-            contrast_filtered(channel, size, sensitivity, pixels_per_degree)
-        };
+        let filter = |channel: &Channel, sensitivity: &[Gaussian]| contrast_filtered(channel, size, sensitivity);
         let filtered =
             [filter(&luminance, &LUMINANCE), filter(&red_green, &RED_GREEN), filter(&blue_yellow, &BLUE_YELLOW)];
         let lab = |pixel: usize| hunt_lab(&[0, 1, 2].map(|channel| f64::from(filtered[channel][pixel])));
         let achromatic: Channel = luminance.iter().map(|value| (value + 16.0) / 116.0).collect();
-        Self {
-            lab: (0..size[0] * size[1]).into_par_iter().map(lab).collect(),
-            features: features(&achromatic, size, pixels_per_degree),
-        }
+        Self { lab: (0..size[0] * size[1]).into_par_iter().map(lab).collect(), features: features(&achromatic, size) }
     }
 }
 
@@ -191,12 +184,12 @@ fn stretched(difference: f64, largest: f64) -> f64 {
 }
 
 /// A channel filtered by the contrast sensitivity, a sum of Gaussians whose integral is 1.
-fn contrast_filtered(channel: &Channel, size: [usize; 2], sensitivity: &[Gaussian], pixels_per_degree: f64) -> Channel {
-    let radius = (3.0 * (WIDEST / (2.0 * PI * PI)).sqrt() * pixels_per_degree).ceil() as i64;
+fn contrast_filtered(channel: &Channel, size: [usize; 2], sensitivity: &[Gaussian]) -> Channel {
+    let radius = (3.0 * (WIDEST / (2.0 * PI * PI)).sqrt() * PIXELS_PER_DEGREE).ceil() as i64;
     let kernels: Vec<(f64, Vec<f64>)> = sensitivity
         .iter()
         .map(|[amplitude, width]| {
-            let at = |step: i64| (-(PI * step as f64 / pixels_per_degree).powi(2) / width).exp();
+            let at = |step: i64| (-(PI * step as f64 / PIXELS_PER_DEGREE).powi(2) / width).exp();
             (amplitude * (PI / width).sqrt(), (-radius..=radius).map(at).collect())
         })
         .collect();
@@ -210,8 +203,8 @@ fn contrast_filtered(channel: &Channel, size: [usize; 2], sensitivity: &[Gaussia
 }
 
 /// Strengths of edges and of points: lengths of the first and of the second derivatives of a Gaussian.
-fn features(achromatic: &Channel, size: [usize; 2], pixels_per_degree: f64) -> [Channel; 2] {
-    let deviation = 0.5 * FEATURE_WIDTH * pixels_per_degree;
+fn features(achromatic: &Channel, size: [usize; 2]) -> [Channel; 2] {
+    let deviation = 0.5 * FEATURE_WIDTH * PIXELS_PER_DEGREE;
     let radius = (3.0 * deviation).ceil() as i64;
     let gaussian = |step: i64| (-(step as f64).powi(2) / (2.0 * deviation * deviation)).exp();
     let smooth: Vec<f64> = (-radius..=radius).map(gaussian).collect();

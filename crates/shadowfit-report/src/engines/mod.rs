@@ -92,3 +92,13 @@ impl Engine {
         (self.fit)(frame, scene, resolution)
     }
 }
+
+/// Greatest difference of two maps' matrix elements, relative where they exceed 1: one and a half texels of 1/1024 of a
+/// map's half side. The engines compute in f32 and round to whole texels, so that a tie may go the other way.
+const SAME_MAP: f64 = 1.5 / 1024.0;
+
+/// Returns whether a map of an engine's own code is the map of our version, to the rounding of f32.
+pub fn is_same_map(real: &FitMap, ours: &FitMap) -> bool {
+    let is_near = |(a, b): (&f64, &f64)| (a - b).abs() <= SAME_MAP * a.abs().max(1.0);
+    real.resolution == ours.resolution && real.view_proj.iter().zip(&ours.view_proj).all(is_near)
+}

@@ -12,7 +12,7 @@ use shadowfit_study::{Evaluator, Judging, NamedTechnique, PreparedScene, View};
 use shadowfit_wgpu::ShadowMapDescriptor;
 
 /// Side of all maps, in texels.
-const RESOLUTION: u32 = 2048;
+pub(super) const RESOLUTION: u32 = 2048;
 /// Filter of all contestants.
 const FILTER: FilterKind = FilterKind::Pcf5x5;
 /// Our presets, and whether the page shows their pictures.

@@ -3,16 +3,12 @@
 use std::path::Path;
 
 use anyhow::Result;
-use shadowfit_report::engines::{ENGINES, Engine};
-use shadowfit_report::peers::{FitMap, Scenarios};
+use shadowfit_report::engines::{ENGINES, Engine, is_same_map};
+use shadowfit_report::peers::Scenarios;
 
+use super::contestants::RESOLUTION;
 use super::fit_file;
 
-/// Resolution of the fits, in texels a side.
-const RESOLUTION: u32 = 2048;
-/// Difference of a matrix element, relative where it exceeds 1, from which on a map counts as different: one and a half
-/// texels. Engines compute in f32 and round to whole texels.
-const TOLERANCE: f64 = 1.5 / 1024.0;
 /// Engines that `fit.mjs` runs.
 const RUN_BY_NODE: [&str; 4] = ["babylon-stable", "babylon-tight", "three-csm", "three-sunlight"];
 
@@ -28,13 +24,11 @@ fn sentence(engine: &Engine, scenarios: &Scenarios, folder: &Path) -> Result<Str
     for (frame, real) in scenarios.frames.iter().zip(real) {
         let ours = engine.fit(frame, &scenarios.scenes[frame.scene], RESOLUTION);
         all += real.len();
-        same +=
-            if real.len() == ours.len() { real.iter().zip(&ours).filter(|(a, b)| is_same(a, b)).count() } else { 0 };
+        same += if real.len() == ours.len() {
+            real.iter().zip(&ours).filter(|(a, b)| is_same_map(a, b)).count()
+        } else {
+            0
+        };
     }
     Ok(format!("{}: {same} of {all} maps are those of the package itself ({}).", engine.name, file.version))
-}
-
-fn is_same(real: &FitMap, ours: &FitMap) -> bool {
-    let is_near = |(a, b): (&f64, &f64)| (a - b).abs() <= TOLERANCE * a.abs().max(1.0);
-    real.resolution == ours.resolution && real.view_proj.iter().zip(&ours.view_proj).all(is_near)
 }
