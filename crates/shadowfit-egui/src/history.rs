@@ -19,18 +19,20 @@ pub(crate) struct Series {
 }
 
 /// All figures, in the order of the columns.
-pub(crate) const SERIES: [Series; 17] = [
+pub(crate) const SERIES: [Series; 19] = [
     Series { name: "wrong", unit: "%", read: |f| Some(f.judged?.wrong) },
     Series { name: "false shadow", unit: "%", read: |f| Some(f.judged?.false_shadow) },
     Series { name: "false light", unit: "%", read: |f| Some(f.judged?.false_light) },
     Series { name: "hole", unit: "%", read: |f| Some(f.judged?.hole) },
     Series { name: "edge", unit: "%", read: |f| Some(f.judged?.edge) },
     Series { name: "light error", unit: "%", read: |f| Some(f.judged?.light_error) },
+    Series { name: "flip", unit: "0 to 1", read: |f| f.judged?.flip },
     Series { name: "crawl", unit: "%", read: |f| f.judged?.crawl },
     Series { name: "pixels per texel 95%", unit: "px", read: |f| Some(f.judged?.pixels_per_texel?[1]) },
     Series { name: "traced", unit: "%", read: |f| f.traced },
     Series { name: "wrong of B", unit: "%", read: |f| Some(f.judged_other?.wrong) },
     Series { name: "light error of B", unit: "%", read: |f| Some(f.judged_other?.light_error) },
+    Series { name: "flip of B", unit: "0 to 1", read: |f| f.judged_other?.flip },
     Series { name: "shadow passes", unit: "ms", read: |f| f.shadow_pass_ms },
     Series { name: "scene pass", unit: "ms", read: |f| f.scene_pass_ms },
     Series { name: "edge passes", unit: "ms", read: |f| f.edges_ms },
@@ -190,8 +192,8 @@ mod tests {
         let lines: Vec<&str> = csv.lines().collect();
         assert_eq!(lines.len(), 3);
         assert!(lines[0].starts_with("time (s),wrong (%),false shadow (%),"), "{}", lines[0]);
-        assert_eq!(lines[1], "0.500,,,,,,,,,,,,,,,,8,");
-        assert_eq!(lines[2], "1.500,1.5,0,0,0,0,0,,2.5,,,,,,,,16.5,4096");
+        assert_eq!(lines[1], "0.500,,,,,,,,,,,,,,,,,,8,");
+        assert_eq!(lines[2], "1.500,1.5,0,0,0,0,0,,,2.5,,,,,,,,,16.5,4096");
         let columns = |line: &str| line.split(',').count();
         assert!(lines.iter().all(|line| columns(line) == SERIES.len() + 1));
     }

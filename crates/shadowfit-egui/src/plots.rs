@@ -14,6 +14,9 @@ use crate::widgets::{caption, color, color_entry, color_line};
 /// Height of the plot, in points.
 const HEIGHT: f32 = 150.0;
 
+/// Greatest height of the menu, in points: all plots without scrolling.
+const MENU_HEIGHT: f32 = 300.0;
+
 /// Space for half of the last time label below the plot, in points.
 const RIGHT_MARGIN: f32 = 14.0;
 
@@ -31,7 +34,7 @@ struct Choice {
 }
 
 /// The plots, in display order.
-const PLOTS: [Choice; 8] = [
+const PLOTS: [Choice; 9] = [
     Choice {
         name: "Wrong pixels",
         help: "Wrong pixels and their classes, in per cent of the judged pixels.",
@@ -46,6 +49,11 @@ const PLOTS: [Choice; 8] = [
         name: "Light error",
         help: "Error of the sunlight, in per cent of the sunlight without shadows.",
         series: &["light error", "light error of B"],
+    },
+    Choice {
+        name: "FLIP",
+        help: "Mean FLIP error of the picture against the same picture with true shadows, while the view rests.",
+        series: &["flip", "flip of B"],
     },
     Choice {
         name: "Crawl",
@@ -85,8 +93,8 @@ impl Plots {
     /// Shows the menu, the plot, a legend with the last values, and the buttons.
     pub(crate) fn show(&mut self, ui: &mut Ui, command: &mut Option<Command>) {
         let mut chosen = self.chosen;
-        let list = ComboBox::from_id_salt("plot").width(ui.available_width()).selected_text(PLOTS[chosen].name);
-        let list = list.show_ui(ui, |ui| {
+        let list = ComboBox::from_id_salt("plot").width(ui.available_width()).height(MENU_HEIGHT);
+        let list = list.selected_text(PLOTS[chosen].name).show_ui(ui, |ui| {
             for (index, plot) in PLOTS.iter().enumerate() {
                 ui.selectable_value(&mut chosen, index, plot.name).on_hover_text(plot.help);
             }

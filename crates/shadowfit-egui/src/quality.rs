@@ -23,12 +23,18 @@ const WRONG_HELP: &str = "Pixels whose verdict, lit or not, differs from the ray
 type Figure = (&'static str, &'static str, fn(&JudgedFigures) -> Option<String>);
 
 /// The figures below the classes.
-const FIGURES: [Figure; 3] = [
+const FIGURES: [Figure; 4] = [
     (
         "Light error",
         "Error of the sunlight, in per cent of the sunlight without shadows. Includes soft edges. Surfaces at grazing \
          light weigh as little as they show.",
         |judged| Some(percent(judged.light_error)),
+    ),
+    (
+        "FLIP",
+        "How different the picture looks from the same picture with true shadows: the mean FLIP error of rendering \
+         papers, 0 (equal) to 1. Measured once the view rests, but not in browsers.",
+        |judged| judged.flip.map(|flip| format!("{flip:.4}")),
     ),
     (
         "Crawl",
@@ -81,7 +87,7 @@ fn one(ui: &mut Ui, judged: &JudgedFigures) {
     ui.spacing_mut().interact_size.y = 0.0;
     Grid::new("quality figures")
         .num_columns(FIGURES.len())
-        .min_col_width(0.26 * ui.available_width())
+        .min_col_width(0.17 * ui.available_width())
         .spacing([14.0, 1.0])
         .show(ui, |ui| {
             for (name, help, _) in FIGURES {

@@ -95,6 +95,8 @@ pub struct JudgedFigures {
     /// Error of the sunlight, in per cent of the sunlight without shadows: the mean of |factor − truth| · N·L divided by
     /// the mean of N·L.
     pub light_error: f32,
+    /// Mean ꟻLIP error of the shaded picture against the same picture with true shadows, 0 to 1.
+    pub flip: Option<f32>,
     /// Pixels that no map covers.
     pub uncovered: f32,
     /// Quantiles 50%, 95% and 99% of the pixels per texel along the worse axis.

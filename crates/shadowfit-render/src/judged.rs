@@ -33,7 +33,7 @@ pub struct JudgedPicture<'a> {
 ///
 /// If there are fewer classes than pixels.
 pub fn classes_texture(gpu: &Gpu, classes: &[u32], size: [u32; 2]) -> wgpu::TextureView {
-    let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
+    let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST | wgpu::TextureUsages::COPY_SRC;
     let texture = bindings::plain_texture(&gpu.device, "classes", size, wgpu::TextureFormat::R32Uint, usage);
     let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(size[0] * 4), rows_per_image: None };
     gpu.queue.write_texture(texture.as_image_copy(), bytemuck::cast_slice(classes), layout, texture.size());

@@ -10,7 +10,7 @@ use shadowfit_render::{
     Statistics,
 };
 use shadowfit_truth::gpu::{GpuBefore, GpuPixel};
-use shadowfit_truth::{FlipReference, Judged, Truth, TruthPoint};
+use shadowfit_truth::{FlipReference, Judged, TruthPoint};
 use shadowfit_wgpu::ShadowMapError;
 use shadowfit_wgpu::exact_edges::EdgeOutcome;
 use wgpu::util::DeviceExt;
@@ -18,7 +18,7 @@ use wgpu::util::DeviceExt;
 use crate::live::{LiveInput, LiveTruth};
 use crate::maps::{measured, picture_maps};
 use crate::picture::{FrameBefore, factors};
-use crate::{JudgeJob, Judging, PreparedScene, SceneRays, SharedTruth, View};
+use crate::{JudgeJob, Judging, PicturePair, PreparedScene, SceneRays, SharedTruth, View};
 
 /// Draws a technique's maps and the scene with their shadows, and judges the picture.
 #[derive(Debug)]
@@ -152,13 +152,42 @@ impl Evaluator {
     ) -> Result<f64> {
         let mapped = self.picture(gpu, scene, view, maps)?;
         if let (None, Some(traced)) = (&truth.picture, truth.get()) {
-            let factors = factors_texture(gpu, traced);
+            let lit = |point: &Option<TruthPoint>| point.map_or(-1.0, |point: TruthPoint| point.lit);
+            let lit: Vec<f32> = traced.points.iter().map(lit).collect();
+            let factors = factors_texture(gpu, &lit, self.judging.size);
             let atmosphere = view.atmosphere();
             let frame = Frame { factors: Some(&factors), ..view.frame(maps, &atmosphere) };
             let picture = self.read_picture(gpu, scene, &frame)?;
             truth.picture = Some(FlipReference::new(&picture, self.judging.size));
         }
         Ok(truth.picture.as_ref().map_or(0.0, |reference| reference.mean_error(&mapped)))
+    }
+
+    /// Draws the shaded picture of a view twice, in the judged size: with these shadow factors of its maps, and with true
+    /// ones. Factors are 0 to 1, rows from the top. Pixels with a negative factor are shaded with the maps.
+    ///
+    /// # Errors
+    ///
+    /// As for [`Self::draw`].
+    ///
+    /// # Panics
+    ///
+    /// If there are less factors than pixels.
+    pub fn picture_pair(
+        &mut self,
+        gpu: &Gpu,
+        scene: &mut PreparedScene,
+        view: &View,
+        maps: &[FittedMap],
+        [mapped, truth]: [&[f32]; 2],
+    ) -> Result<PicturePair> {
+        let (size, atmosphere) = (self.judging.size, view.atmosphere());
+        let mut draw = |factors: &[f32], maps_stay: bool| {
+            let factors = factors_texture(gpu, factors, size);
+            let frame = Frame { factors: Some(&factors), maps_stay, ..view.frame(maps, &atmosphere) };
+            self.read_picture(gpu, scene, &frame)
+        };
+        Ok(PicturePair { mapped: draw(mapped, false)?, truth: draw(truth, true)?, size })
     }
 
     /// Draws the maps of a view and judges their shadows.
@@ -432,13 +461,11 @@ impl Evaluator {
     }
 }
 
-/// Uploads a picture's true factors. Surfaces that face away from the light have factor 0.
-fn factors_texture(gpu: &Gpu, truth: &Truth) -> wgpu::TextureView {
-    let factor = |point: &Option<TruthPoint>| point.map_or(-1.0, |point: TruthPoint| point.lit);
-    let factors: Vec<u8> = truth.points.iter().flat_map(|point| factor(point).to_le_bytes()).collect();
-    let [width, height] = truth.camera.size;
+/// Uploads a picture's shadow factors, rows from the top.
+fn factors_texture(gpu: &Gpu, factors: &[f32], [width, height]: [u32; 2]) -> wgpu::TextureView {
+    let factors: Vec<u8> = factors.iter().flat_map(|factor| factor.to_le_bytes()).collect();
     let descriptor = wgpu::TextureDescriptor {
-        label: Some("true shadow factors"),
+        label: Some("shadow factors"),
         size: wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
         mip_level_count: 1,
         sample_count: 1,

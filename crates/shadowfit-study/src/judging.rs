@@ -83,3 +83,21 @@ impl SharedTruth {
         self.truth.get_or_insert_with(trace)
     }
 }
+
+/// A shaded picture of a view, and the same picture with true shadows.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PicturePair {
+    /// sRGB pixels, four bytes each, rows from the top.
+    pub(crate) mapped: Vec<u8>,
+    /// The same with true shadows.
+    pub(crate) truth: Vec<u8>,
+    /// Width and height, in pixels.
+    pub(crate) size: [u32; 2],
+}
+
+impl PicturePair {
+    /// Returns the mean [ꟻLIP](FlipReference) error of the picture, 0 (as with true shadows) to 1.
+    pub fn flip(&self) -> f64 {
+        FlipReference::new(&self.truth, self.size).mean_error(&self.mapped)
+    }
+}

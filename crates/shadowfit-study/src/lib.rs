@@ -42,7 +42,7 @@ pub use evaluator::Evaluator;
 pub use file_camera::{camera_reaches, file_camera, near_of};
 pub use fits::{RayUse, see_by_rays};
 pub use frame::atmosphere;
-pub use judging::{Judging, SharedTruth};
+pub use judging::{Judging, PicturePair, SharedTruth};
 pub use live::LiveTruth;
 pub use output::{print, tell};
 pub use picture::{FrameBefore, JudgeJob};

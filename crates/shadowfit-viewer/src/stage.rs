@@ -7,6 +7,7 @@ mod compare;
 mod demand_view;
 mod figures;
 mod fitted;
+mod flip;
 mod home;
 mod inset;
 mod judge;

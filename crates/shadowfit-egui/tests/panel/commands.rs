@@ -175,6 +175,7 @@ fn every_plot_can_be_chosen() {
     for name in [
         "Wrong pixels, A | B",
         "Light error",
+        "FLIP",
         "Crawl",
         "Pixels per texel",
         "Time of passes",

@@ -21,6 +21,7 @@ pub(crate) fn judged() -> JudgedFigures {
         hole: 0.02,
         edge: 1.21,
         light_error: 0.64,
+        flip: Some(0.0112),
         uncovered: 0.0,
         pixels_per_texel: Some([0.82, 1.94, 3.27]),
         crawl: Some(0.11),
@@ -38,6 +39,7 @@ pub(crate) fn judged_better() -> JudgedFigures {
         hole: 0.0,
         edge: 0.62,
         light_error: 0.21,
+        flip: Some(0.0043),
         pixels_per_texel: Some([0.44, 1.02, 1.6]),
         ..judged()
     }
@@ -146,6 +148,7 @@ pub(crate) fn wide_judged() -> JudgedFigures {
         hole: 22.2,
         edge: 22.2,
         light_error: 88.8,
+        flip: Some(0.8888),
         uncovered: 88.8,
         pixels_per_texel: Some([888.8, 888.8, 888.8]),
         crawl: Some(88.8),

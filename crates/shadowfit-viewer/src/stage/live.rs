@@ -10,6 +10,7 @@ use shadowfit_render::{DeviceFault, Gpu, JudgedPicture, ProbeTargets, classes_te
 use shadowfit_study::{BackgroundJudge, Evaluator, LiveTruth, View};
 use shadowfit_truth::PictureFigures;
 
+use super::flip::Flip;
 use super::shot::Shot;
 use crate::platform::IS_PAGE;
 
@@ -17,7 +18,7 @@ use crate::platform::IS_PAGE;
 /// a second.
 const BACKGROUND_WIDTH: u32 = 480;
 /// Time for which a view must not change before a thread judges it, in seconds, unless the judged picture is
-/// shown.
+/// shown, and before its look is compared.
 const STILL: f32 = 0.3;
 /// Interval at which a thread judges a changing view, in seconds.
 const MOVING: f32 = 2.0;
@@ -100,6 +101,8 @@ pub(super) struct Live {
     begun: Option<f32>,
     judged: Option<Judged>,
     sums: Option<Sums>,
+    /// The look of a picture that was judged, with its content.
+    flip: Option<(Key, Flip)>,
     /// The last pictures sent to the GPU, by their numbers.
     drawn: Vec<(u64, Drawn)>,
     /// The view of the previous frame, and the time since which it has not changed, by the stage's clock in
@@ -150,7 +153,8 @@ impl Live {
     /// Returns the latest figures, at a time of the stage's clock in seconds.
     pub(super) fn figures(&self, clock: f32) -> Option<JudgedFigures> {
         let Sums { of, figures, .. } = self.sums.as_ref()?;
-        Some(judged_figures(figures.as_ref()?, of.size, clock - of.at))
+        let flip = self.flip.as_ref().filter(|(key, _)| *key == of.key).and_then(|(_, flip)| flip.mean());
+        Some(JudgedFigures { flip, ..judged_figures(figures.as_ref()?, of.size, clock - of.at) })
     }
 
     /// Returns the GPU time of judging the picture of the latest figures, in milliseconds, without its probe.
@@ -195,10 +199,8 @@ impl Live {
             ray_offset: shot.ray_offset(),
             maps: maps.to_vec(),
         };
-        let since = match &self.last {
-            Some((last, since)) if *last == key => *since,
-            _ => shot.clock,
-        };
+        let rests_since = self.last.as_ref().filter(|(last, _)| *last == key).map(|(_, since)| *since);
+        let since = rests_since.unwrap_or(shot.clock);
         self.last = Some((key.clone(), since));
         self.take(shot.gpu)?;
         if shot.scene.ready_rays().is_none() && !self.pose_rays(shot) {
@@ -207,14 +209,22 @@ impl Live {
         if self.waits && shot.is_unseen {
             return Ok(false);
         }
+        let may_compare = rests_since.is_some() && (self.waits || shot.clock - since >= STILL);
         if self.by == JudgedBy::Gpu {
-            return self.judge_on_gpu(evaluator, shot, view, key, size);
+            let maps_stay = self.judge_on_gpu(evaluator, shot, view, key, size)?;
+            if may_compare {
+                self.compare_looks(evaluator, shot, view)?;
+            }
+            return Ok(maps_stay);
         }
         let is_asked = shot.settings.view.mode.is_judged() || shot.settings.view.marks != ErrorMarks::Off;
         let waited = self.begun.map_or(f32::MAX, |begun| shot.clock - begun);
         let is_due = self.waits || is_asked || shot.clock - since >= STILL || waited >= MOVING;
         let is_known = self.judged.as_ref().is_some_and(|judged| judged.key == key);
         let is_busy = self.background.as_ref().is_some_and(BackgroundJudge::is_busy) || !self.drawn.is_empty();
+        if is_known && may_compare {
+            return self.compare_looks(evaluator, shot, view);
+        }
         if is_known || !is_due || is_busy {
             return Ok(false);
         }
@@ -229,6 +239,21 @@ impl Live {
             judged.seen = evaluator.take_probe();
         }
         Ok(maps_stay)
+    }
+
+    /// Compares the judged picture with the same picture with true shadows, unless that was done. Returns
+    /// whether the maps were drawn for it. Browsers cannot wait for pictures to be read.
+    fn compare_looks(&mut self, evaluator: &mut Evaluator, shot: &mut Shot<'_>, view: &View) -> Result<bool> {
+        let Some(judged) = &self.judged else { return Ok(false) };
+        if IS_PAGE || self.flip.as_ref().is_some_and(|(key, _)| *key == judged.key) {
+            return Ok(false);
+        }
+        let of_gpu = if judged.seen.is_none() { evaluator.take_probe() } else { None };
+        let Some(probe) = judged.seen.as_ref().or(of_gpu.as_ref()) else { return Ok(false) };
+        let (probe, maps) = (probe.read(shot.gpu)?, &judged.key.maps);
+        let flip = Flip::measure(evaluator, shot, (view, maps), (&probe, judged.view.texture()), self.waits)?;
+        self.flip = Some((judged.key.clone(), flip));
+        Ok(true)
     }
 
     /// Makes rays of the current pose: at once if that is quick, otherwise on a thread for a later frame.
@@ -355,6 +380,7 @@ pub(crate) fn judged_figures(figures: &PictureFigures, size: [u32; 2], age: f32)
         hole: figures.hole as f32,
         edge: figures.edge as f32,
         light_error: figures.light_error as f32,
+        flip: figures.flip.map(|flip| flip as f32),
         uncovered: figures.uncovered as f32,
         pixels_per_texel: figures.pixels_per_texel.map(|quantiles| quantiles.map(|value| value as f32)),
         crawl: figures.crawl.map(|crawl| crawl as f32),

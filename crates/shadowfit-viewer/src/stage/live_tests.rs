@@ -7,6 +7,8 @@ use shadowfit_render::{FlyInput, RenderTarget, UpdateKind, UpdatedRect};
 use shadowfit_scene::builtin::default_scene;
 use shadowfit_testing::renderer_gpu;
 
+use shadowfit_study::{Judging, SharedTruth, View};
+
 use super::live::JudgedBy;
 use super::*;
 
@@ -175,4 +177,38 @@ fn gpu_maps_that_are_drawn_for_the_judge_are_not_shown_as_kept() {
     let is_whole = |update: &&UpdatedRect| matches!(update.content, UpdateKind::All | UpdateKind::Static);
     assert_eq!(drawn.iter().filter(is_whole).count(), maps, "{drawn:?}");
     assert_eq!(drawn.len(), maps, "{drawn:?}");
+}
+
+/// Returns the ꟻLIP error of the stage's view as reports measure it.
+fn flip_as_in_reports(stage: &mut Stage) -> f32 {
+    let (maps, view) = (stage.maps(SIZE), View { is_first: true, ..stage.view(SIZE) });
+    let evaluator = &mut stage.side.evaluator;
+    evaluator.judging = Judging { size: SIZE, crawl: false, flip: true, ..evaluator.judging };
+    let judged = evaluator.judge(&stage.gpu, &mut stage.scene, &view, &maps, &mut SharedTruth::default());
+    judged.expect("it can be judged").tally.figures().and_then(|figures| figures.flip).expect("measured") as f32
+}
+
+#[test]
+fn gpu_a_view_that_rests_is_compared_with_true_shadows_as_in_reports() {
+    for on_gpu in [true, false] {
+        let (mut stage, target) = stage(on_gpu);
+        stage.settings.technique = stage.settings.technique.with_count(1);
+        let flip = |stage: &Stage| stage.judged_figures().expect("it was judged").flip;
+        judge(&mut stage, &target);
+        draw(&mut stage, &target);
+        assert_eq!(flip(&stage), None, "it has just come to rest");
+        wait(&mut stage, 0.4);
+        draw(&mut stage, &target);
+        let measured = (0..2000).find_map(|_| {
+            std::thread::sleep(std::time::Duration::from_millis(5));
+            flip(&stage)
+        });
+        let (measured, wanted) = (measured.expect("it is measured"), flip_as_in_reports(&mut stage));
+        assert!(wanted > 0.01, "the shadows are coarse: {wanted}");
+        assert!((measured - wanted).abs() < 0.01 * wanted, "{measured}, in reports {wanted}, on the GPU: {on_gpu}");
+        wait(&mut stage, 2.5);
+        step(&mut stage);
+        judge(&mut stage, &target);
+        assert_eq!(flip(&stage), None, "another picture");
+    }
 }
