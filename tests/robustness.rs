@@ -3,6 +3,7 @@
 
 mod command_line_gpu;
 mod device_classes_gpu;
+mod docs_gpu;
 mod files_gpu;
 mod lost_device_gpu;
 mod scenes_gpu;

@@ -8,7 +8,7 @@ use shadowfit::{PRESETS, Preset};
 use shadowfit_params::{BoxSource, NAMED_INPUTS, NamedInputs};
 use shadowfit_report::geometry::Source;
 use shadowfit_report::peers::Scenarios;
-use shadowfit_study::{NamedTechnique, check_place, print, write_whole};
+use shadowfit_study::{NamedTechnique, check_place, make_folder, print, write_whole};
 
 mod runner;
 
@@ -65,6 +65,9 @@ pub(crate) fn run(args: &Args) -> Result<()> {
         args.fit
     );
     let source = args.geometry.as_ref().filter(|_| needs);
+    if let Some(folder) = out.parent().filter(|folder| !folder.as_os_str().is_empty()) {
+        make_folder(folder)?;
+    }
     check_place(out)?;
     let (file, times) = runner::run(&scenarios, &named, source)?;
     write_whole(out, file.to_json(out)?.as_bytes())?;

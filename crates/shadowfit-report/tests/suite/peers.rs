@@ -10,7 +10,7 @@ use shadowfit_testing::adapter_name;
 use crate::scratch::{REFUSED, Scratch, shared};
 
 /// A camera 4 m over a floor of one triangle, looking down, and a light straight down.
-const SCENARIOS: &str = r#"{
+pub(crate) const FLOOR_SCENARIOS: &str = r#"{
     "scenes": [{
         "name": "floor", "file": "floor.glb", "scale": 1, "triangles": 1,
         "objects": [[-50, 0, -50, 150, 0, 150]], "aabb": [-50, 0, -50, 150, 0, 150]
@@ -27,15 +27,15 @@ const FLOOR: [f32; 9] = [-50.0, 0.0, -50.0, -50.0, 0.0, 150.0, 150.0, 0.0, -50.0
 
 /// Returns the scenarios without the scene's file.
 fn without_file() -> String {
-    let scenarios = SCENARIOS.replace("\"file\": \"floor.glb\", ", "");
-    assert_ne!(scenarios, SCENARIOS);
+    let scenarios = FLOOR_SCENARIOS.replace("\"file\": \"floor.glb\", ", "");
+    assert_ne!(scenarios, FLOOR_SCENARIOS);
     scenarios
 }
 
 /// Creates a folder with the floor, its scenarios and a fit.
 fn with_floor(name: &str) -> Scratch {
     let scratch = Scratch::new(name);
-    scratch.file("scenarios.json", SCENARIOS);
+    scratch.file("scenarios.json", FLOOR_SCENARIOS);
     scratch.file("floor.f32", FLOOR.map(f32::to_le_bytes).concat());
     scratch.fit("fit.json", &fit("floor/90/0"));
     scratch
@@ -154,7 +154,7 @@ fn without_triangles_a_scene_without_a_file_is_named_and_what_to_do() {
 fn whole_numbers_with_a_point_are_measured_alike_and_others_are_refused() {
     let scratch = with_floor("numbers");
     let whole =
-        SCENARIOS.replace("\"triangles\": 1,", "\"triangles\": 1.0,").replace("\"scene\": 0,", "\"scene\": 0.0,");
+        FLOOR_SCENARIOS.replace("\"triangles\": 1,", "\"triangles\": 1.0,").replace("\"scene\": 0,", "\"scene\": 0.0,");
     let whole = whole.replace("\"frame\": 0,", "\"frame\": 0.0,");
     let fit = scratch.text("fit.json");
     let geometry = ["--triangles", ".", "--no-render", "-o", "out"];
@@ -173,7 +173,7 @@ fn whole_numbers_with_a_point_are_measured_alike_and_others_are_refused() {
         let output = scratch.report(&[&["scenarios.json", "bad.json"][..], &geometry].concat());
         assert_refused(&output, &[&format!("bad.json: frames[0].maps[0].resolution: {reason}")]);
     }
-    scratch.file("bad.json", SCENARIOS.replace("\"frame\": 0,", "\"frame\": 0.5,"));
+    scratch.file("bad.json", FLOOR_SCENARIOS.replace("\"frame\": 0,", "\"frame\": 0.5,"));
     let output = scratch.report(&[&["bad.json", "fit.json"][..], &geometry].concat());
     assert_refused(&output, &["bad.json: frames[0].frame: 0.5 is not a whole number"]);
 }
