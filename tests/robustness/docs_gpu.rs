@@ -44,7 +44,7 @@ fn arguments(words: &[String]) -> Option<Vec<String>> {
     let lacks = |option: &&&str| option.starts_with("--set") || !given.contains(&name(option));
     arguments.extend(quick.iter().filter(lacks).map(|option| (*option).to_owned()));
     match arguments.iter().position(|word| word == "--size") {
-        Some(size) => arguments[size + 1] = "64x36".to_owned(),
+        Some(size) => "64x36".clone_into(&mut arguments[size + 1]),
         None => arguments.push("--size=64x36".to_owned()),
     }
     Some(arguments)

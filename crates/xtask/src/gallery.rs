@@ -104,10 +104,13 @@ const CORNER: (Part, u32) = ([458, 246, 47, 47], 4);
 /// The argument that renders only the film.
 const FILM: &str = "film";
 
+/// The argument that renders only the pictures of the viewer's tour.
+const TOUR_ONLY: &str = "tour";
+
 /// Gap between pictures of a strip, in pixels.
 const GAP: u32 = 5;
 
-/// Renders the docs' pictures. `only` limits them to some samples or the film.
+/// Renders the docs' pictures. `only` limits them to some samples, the tour or the film.
 ///
 /// # Errors
 /// If the viewer or the report cannot be built, or ends with an error.
@@ -117,6 +120,9 @@ pub(crate) fn gallery(only: &[String]) -> Result<()> {
     let is_wanted = |name: &str| only.iter().any(|wanted| wanted == name);
     if !only.is_empty() {
         sample_pages(&machine, &images.join(SAMPLE_IMAGES), is_wanted)?;
+        if is_wanted(TOUR_ONLY) {
+            tour(&machine, &images)?;
+        }
         if is_wanted(FILM) {
             film::film(&machine, &images)?;
         }

@@ -81,8 +81,8 @@ enum Task {
     Ci,
     /// Render the pictures of the README and the docs again.
     Gallery {
-        /// Render only these: samples by their names, for example `xna-shadow-mapping`, or `film` for the
-        /// film of the README.
+        /// Render only these: samples by their names, for example `xna-shadow-mapping`, `tour` for the pictures
+        /// of the viewer's window, or `film` for the film of the README.
         only: Vec<String>,
     },
     /// Measure with `shadowfit-bench` and write the tables to docs/figures: of the core crate, with

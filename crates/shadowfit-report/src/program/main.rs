@@ -114,27 +114,3 @@ fn interruptible(command: impl FnOnce(&Interrupt) -> Result<()>) -> Result<bool>
     command(&interrupt)?;
     Ok(!interrupt.is_requested())
 }
-
-#[cfg(test)]
-mod tests {
-    use std::path::Path;
-
-    use shadowfit_testing::commands::doc_commands;
-
-    use super::*;
-
-    #[test]
-    fn every_command_of_the_docs_has_options_that_exist() {
-        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-        let mut count = 0;
-        for command in doc_commands(&root) {
-            let Some(words) = command.program_arguments("shadowfit-report") else { continue };
-            // The help ends parsing after all other arguments, whether required ones are there or not.
-            let words = ["shadowfit-report".to_owned()].into_iter().chain(words).chain(["--help".to_owned()]);
-            let error = Cli::try_parse_from(arguments(words.map(OsString::from))).err().expect("help");
-            assert_eq!(error.kind(), clap::error::ErrorKind::DisplayHelp, "{}: {error}", command.page);
-            count += 1;
-        }
-        assert!(count >= 8, "{count}");
-    }
-}

@@ -47,19 +47,27 @@ const FLOOR: &str = r#"{
     "buffers": [{ "byteLength": 36, "uri": "data:;base64,AABIwgAAAAAAAEjCAABIwgAAAAAAABZDAAAWQwAAAAAAAEjC" }]
 }"#;
 
-/// Returns options that make a command quick, without those that it has.
-fn quick(words: &[String]) -> Vec<&'static str> {
+/// Returns a command with the adapter of the tests, and with options that make it quick.
+fn quick(words: &[String]) -> Vec<String> {
     // The pictures in the docs are frames with even numbers.
     let every = if words.iter().any(|word| word == "--picture") { "2" } else { "24" };
-    let drawn = [["--adapter", adapter_name()], ["--size", "64x36"], ["--every", every], ["--resolution", "256"]];
     let options: &[[&str; 2]] = match words[0].as_str() {
-        "tune" => &[drawn[0], drawn[1], ["--frames", "1"]],
-        "peers" => &drawn[..1],
-        "culling" => &[drawn[0], ["--frames", "2"]],
-        "fit" => &[],
-        _ => &drawn,
+        "tune" => &[["--size", "64x36"], ["--frames", "1"], ["--resolution", "256"]],
+        "culling" => &[["--frames", "2"]],
+        "fit" | "peers" => &[],
+        _ => &[["--size", "64x36"], ["--every", every], ["--resolution", "256"]],
     };
-    options.iter().filter(|[name, _]| !words.iter().any(|word| word == name)).flatten().copied().collect()
+    let mut quick: Vec<String> = words.iter().filter(|word| *word != "--software").cloned().collect();
+    if words[0] != "fit" {
+        quick.extend(["--adapter".to_owned(), adapter_name().to_owned()]);
+    }
+    for [name, value] in options {
+        match quick.iter().position(|word| word == name) {
+            Some(at) => (*value).clone_into(&mut quick[at + 1]),
+            None => quick.extend([(*name).to_owned(), (*value).to_owned()]),
+        }
+    }
+    quick
 }
 
 /// Replaces names of files with `*` by the files of the folder.
@@ -81,8 +89,7 @@ fn every_command_of_the_docs_runs() {
         if run.contains(&words) {
             continue;
         }
-        let mut arguments: Vec<String> = words.iter().flat_map(|word| expanded(&scratch, word)).collect();
-        arguments.extend(quick(&words).into_iter().map(str::to_owned));
+        let arguments: Vec<String> = quick(&words).iter().flat_map(|word| expanded(&scratch, word)).collect();
         println!("{}: {}", command.page, arguments.join(" "));
         assert_success(&scratch.run(&arguments.iter().map(String::as_str).collect::<Vec<_>>()));
         run.push(words);
