@@ -13,7 +13,7 @@ use shadowfit::settings::MAX_MAPS;
 use shadowfit::{Boxes, FitInput, FittedMap, ShadowFitter, ViewFrustum};
 use shadowfit_wgpu::demand::DemandView;
 
-use crate::bias::Biases;
+use crate::bias::{Biases, WINDOWS_MAX_TANGENT, WINDOWS_SLOPE_BIAS};
 use crate::cascade::cascade;
 use crate::clusters::LARGE;
 use crate::histogram::{CountedView, Sightings, Wanted};
@@ -145,7 +145,9 @@ impl Sun {
         let forward = -transform.affine().matrix3.z_axis;
         let direction = forward.try_normalize().ok_or(Problem::Light)?;
         let biases = match fitted.bias {
-            FitBias::Ours => Biases::OURS,
+            // Bevy's own code reads a single cascade.
+            FitBias::Ours if fitted.fit == Fit::Windows && count > 1 => Biases::OF_WINDOWS,
+            FitBias::Ours => Biases::OF_CASCADES,
             FitBias::Bevys => Biases::of(light),
         };
         Ok(Self {
@@ -338,7 +340,9 @@ impl Sun {
     /// Returns the cascade of a map, with room for receivers that biases move toward the light.
     fn cascade(&self, map: &FittedMap) -> Cascade {
         let texel = map.projection.texel_size.max_element();
-        cascade(map, self.biases.depth.max(0.0) + (self.biases.normal.max(0.0) * SQRT_2 + 1.0) * texel)
+        let by_slope = if self.fitted.fit == Fit::Windows { WINDOWS_SLOPE_BIAS * WINDOWS_MAX_TANGENT } else { 0.0 };
+        let texels = self.biases.normal.max(0.0) * SQRT_2 + by_slope + 1.0;
+        cascade(map, self.biases.depth.max(0.0) + texels * texel)
     }
 }
 

@@ -38,6 +38,7 @@ mod settings;
 mod view;
 mod windows_shader;
 
+pub use bias::{WINDOWS_MAX_TANGENT, WINDOWS_SLOPE_BIAS};
 pub use clusters::WholeBox;
 pub use settings::{Fit, FitBias, FitSplits, FittedShadows};
 

@@ -7,6 +7,7 @@ use std::borrow::Cow;
 use bevy::prelude::*;
 use bevy::shader::{Shader, Source};
 
+use crate::bias::{WINDOWS_MAX_TANGENT, WINDOWS_SLOPE_BIAS};
 use crate::settings::{Fit, FittedShadows};
 
 /// Path of the library in Bevy.
@@ -91,6 +92,8 @@ fn extended(text: &str) -> Option<String> {
         let end = extended.find(place)? + place.len();
         extended.insert_str(end, addition);
     }
+    extended.push_str(&format!("\nconst SHADOWFIT_SLOPE_BIAS: f32 = {WINDOWS_SLOPE_BIAS:?};\n"));
+    extended.push_str(&format!("const SHADOWFIT_MAX_TANGENT: f32 = {WINDOWS_MAX_TANGENT:?};\n"));
     extended.push_str(include_str!("windows.wesl"));
     Some(extended)
 }

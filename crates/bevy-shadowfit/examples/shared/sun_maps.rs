@@ -2,9 +2,13 @@
 
 use bevy::light::cascade::Cascade;
 use bevy::light::{CascadeShadowConfig, DirectionalLight};
+use bevy_shadowfit::{WINDOWS_MAX_TANGENT, WINDOWS_SLOPE_BIAS};
 use shadowfit::glam::{DMat4, DVec3};
 use shadowfit::settings::MapSelection;
-use shadowfit_report::contestant::{LookupBlend, LookupFilter, LookupMap, ShadowLookup};
+use shadowfit_report::contestant::{LookupBlend, LookupFilter, LookupMap, ShadowLookup, SlopeBias};
+
+/// Bias of the plugin's shader for windows.
+const SLOPE_BIAS: SlopeBias = SlopeBias { texels: WINDOWS_SLOPE_BIAS as f64, max_tangent: WINDOWS_MAX_TANGENT as f64 };
 
 /// Cascades, bounds and biases of a light in a view.
 #[derive(Clone)]
@@ -53,6 +57,7 @@ impl SunMaps {
             },
             depth_bias: self.depth_bias.into(),
             normal_bias: self.normal_bias.into(),
+            slope_bias: if has_windows { SLOPE_BIAS } else { SlopeBias::default() },
             to_light,
             filter,
         }

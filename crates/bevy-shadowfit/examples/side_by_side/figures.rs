@@ -46,15 +46,18 @@ struct Subject {
 /// Figures of a half. They are NaN if no surface faces the light.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Figures {
-    /// Window pixels per texel along the texel's worse axis: the quantile of 95% of the pixels.
+    /// Window pixels per texel along the texel's worse axis: the 95% quantile.
     pixels_per_texel: f64,
     /// Share of the pixels facing the light that are wrong, in per cent.
     wrong: f64,
+    /// Error of the sunlight, in per cent of the sunlight without shadows.
+    light_error: f64,
 }
 
 impl fmt::Display for Figures {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        write!(f, "pixels per texel, 95%: {:.2}   wrong: {:.2}%", self.pixels_per_texel, self.wrong)
+        let Self { pixels_per_texel, wrong, light_error } = self;
+        write!(f, "pixels per texel {pixels_per_texel:.2}   wrong {wrong:.2}%   light error {light_error:.2}%")
     }
 }
 
@@ -125,6 +128,7 @@ impl Subject {
         // A pixel of the measured image is wider than a pixel of the window by this factor.
         let scale = f64::from(self.height) / f64::from(size[1]);
         let [_, texel, _] = figures.and_then(|figures| figures.pixels_per_texel).unwrap_or([f64::NAN; 3]);
-        Figures { pixels_per_texel: texel * scale, wrong: figures.map_or(f64::NAN, |figures| figures.wrong) }
+        let [wrong, light_error] = figures.map_or([f64::NAN; 2], |figures| [figures.wrong, figures.light_error]);
+        Figures { pixels_per_texel: texel * scale, wrong, light_error }
     }
 }

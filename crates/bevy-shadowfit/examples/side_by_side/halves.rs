@@ -116,12 +116,12 @@ pub(crate) fn write(
     let FittedShadows { fit, bias, splits } = **fitted;
     let fit = format!("{fit:?}").to_lowercase();
     let [bias, splits] = [bias == FitBias::Ours, splits == FitSplits::Ours].map(|is| if is { "our" } else { "Bevy's" });
-    let whose =
-        if bias == splits { format!("{bias} bias and splits") } else { format!("{bias} bias, {splits} splits") };
+    // Windows have no splits.
+    let splits = if fit == "windows" { String::new() } else { format!(", {splits} splits") };
     for (side, mut text) in &mut lines {
         let name = match side {
             Side::Left => "Bevy's cascades".to_owned(),
-            Side::Right => format!("shadowfit {fit}, {whose}"),
+            Side::Right => format!("{fit}, {bias} bias{splits}"),
         };
         let measured = measured.iter().find(|(of, _)| *of == side).and_then(|(_, measured)| measured.figures);
         let figures = measured.map_or("measuring".to_owned(), |figures| figures.to_string());

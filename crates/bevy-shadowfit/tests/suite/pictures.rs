@@ -152,3 +152,20 @@ fn gpu_every_fit_draws_the_shadows_that_bevys_own_cascades_draw() {
         assert!(ours.texel() < bevys.texel() * 1.1, "{fit:?}: {} m to {} m", ours.texel(), bevys.texel());
     }
 }
+
+#[test]
+fn gpu_windows_do_not_darken_lit_surfaces() {
+    let dimmed = |fit| {
+        let mut stage = stage(fit, true, false, Msaa::Off);
+        let shadowed = stage.brightness();
+        stage.app.world_mut().get_mut::<DirectionalLight>(stage.light).expect("a light").shadow_maps_enabled = false;
+        for _ in 0..4 {
+            stage.app.update();
+        }
+        let is_dimmed = |(dark, lit): &(&u8, &u8)| (**lit / 2..lit.saturating_sub(3)).contains(*dark);
+        shadowed.iter().zip(&stage.brightness()).filter(is_dimmed).count()
+    };
+    // Only the soft edges of shadows are between light and shadow.
+    let [bevys, windows] = [None, Some(Fit::Windows)].map(dimmed);
+    assert!(bevys > 0 && windows <= bevys, "{windows} dimmed pixels, with Bevy's cascades {bevys}");
+}

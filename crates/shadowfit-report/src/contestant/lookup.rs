@@ -40,10 +40,21 @@ pub struct ShadowLookup {
     pub depth_bias: f64,
     /// Offset of a point along its normal, in diagonals of a texel.
     pub normal_bias: f64,
+    /// Offset of a point toward the light by slope.
+    pub slope_bias: SlopeBias,
     /// Unit direction toward the light, world axes.
     pub to_light: DVec3,
     /// Filter of the look-up.
     pub filter: LookupFilter,
+}
+
+/// An offset toward the light in proportion to the tangent of the angle between the light and a surface's normal.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SlopeBias {
+    /// Offset at a tangent of 1, in texels.
+    pub texels: f64,
+    /// Greatest tangent that is used.
+    pub max_tangent: f64,
 }
 
 impl ShadowLookup {
@@ -243,7 +254,9 @@ impl<'a> Simulation<'a> {
     fn position(&self, index: usize, point: &TruthPoint) -> Option<DVec3> {
         let (lookup, map) = (self.lookup, &self.lookup.maps[index]);
         let normal_offset = point.normal * (lookup.normal_bias * SQRT_2 * map.texel);
-        let at = point.position + normal_offset + lookup.to_light * lookup.depth_bias;
+        let tangent = (point.facing.powi(-2) - 1.0).max(0.0).sqrt().min(lookup.slope_bias.max_tangent);
+        let by_slope = lookup.slope_bias.texels * tangent * map.texel;
+        let at = point.position + normal_offset + lookup.to_light * (lookup.depth_bias + by_slope);
         let ndc = map.clip_from_world.project_point3(at);
         let is_inside = ndc.truncate().abs().max_element() <= 1.0 && (0.0..=1.0).contains(&ndc.z);
         is_inside.then_some(ndc)
@@ -315,6 +328,7 @@ mod tests {
             blend: LookupBlend::ViewDepth { overlap: 0.25 },
             depth_bias: 0.0,
             normal_bias: 0.0,
+            slope_bias: SlopeBias::default(),
             to_light: DVec3::Z,
             filter: LookupFilter::Castano13,
         };

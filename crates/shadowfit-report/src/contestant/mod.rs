@@ -34,7 +34,7 @@ use anyhow::Result;
 use glam::DVec3;
 use shadowfit_truth::{MapReading, MeasuredMap, PictureMaps};
 
-pub use lookup::{LookupBlend, LookupFilter, LookupMap, ShadowLookup};
+pub use lookup::{LookupBlend, LookupFilter, LookupMap, ShadowLookup, SlopeBias};
 pub use measure::{JudgeSettings, JudgeTimes, JudgedPicture, Judging};
 pub use results::{FrameResult, Results, RunFacts};
 pub use sums::Sums;

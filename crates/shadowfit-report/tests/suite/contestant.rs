@@ -5,7 +5,7 @@ use glam::dcamera::rh::{proj::directx::orthographic, view::look_to_mat4};
 use glam::{DMat4, DVec2, DVec3, Vec3};
 use shadowfit_report::contestant::{
     Contestant, Drawn, JudgeSettings, Judging, LightMaps, LitSurface, LookupBlend, LookupFilter, LookupMap, Redraw,
-    Results, RunFacts, ShadowLookup, Shadows,
+    Results, RunFacts, ShadowLookup, Shadows, SlopeBias,
 };
 use shadowfit_report::geometry::Corners;
 use shadowfit_report::peers::Frame;
@@ -113,6 +113,7 @@ fn lookup(frame: &Frame) -> ShadowLookup {
         blend: LookupBlend::ViewDepth { overlap: 0.0 },
         depth_bias: 0.02,
         normal_bias: 1.0,
+        slope_bias: SlopeBias::default(),
         to_light,
         filter: LookupFilter::Hardware2x2,
     }
