@@ -25,7 +25,7 @@ const MARKS: [&str; 2] = ["<!-- figures: begin -->", "<!-- figures: end -->"];
 #[derive(clap::Args)]
 #[expect(clippy::struct_excessive_bools, reason = "the flags of a command line")]
 pub(crate) struct Figures {
-    /// A quick look of two minutes: one frame of each path.
+    /// A quick look of two minutes: one frame of each path, and the fits of the README.
     #[arg(long)]
     quick: bool,
     /// Also runs the fits of three.js and Babylon.js from their npm packages and compares them with ours.

@@ -19,12 +19,14 @@ mod peers_check;
 mod scenes;
 mod tables;
 
-use contestants::Contestant;
+use contestants::{Contestant, Shown};
 use measured::Measured;
 use scenes::{FigureScene, Figures};
 
 /// Size of the pictures on a software driver, in pixels.
 const SOFTWARE_SIZE: [u32; 2] = [640, 360];
+/// As above, for a quick look.
+const QUICK_SIZE: [u32; 2] = [480, 270];
 /// Size of the pictures on a GPU, in pixels.
 const GPU_SIZE: [u32; 2] = [1280, 720];
 /// Frames of a path to each one that is judged, on a software driver. All are fitted.
@@ -34,13 +36,15 @@ const QUICK_STEP: u32 = 20;
 
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// A quick look of about two minutes on a software driver: one frame of each path
+    /// A quick look of less than two minutes on a software driver: one frame of each path, and the fits of
+    /// the README
     #[arg(long)]
     quick: bool,
     /// Judge every Nth frame of each path [default: 1 on a GPU, 5 on a software driver, 20 with --quick]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=20))]
     every: Option<u32>,
-    /// Width and height of the judged pictures, in pixels [default: 1280x720 on a GPU, 640x360 on a software driver]
+    /// Width and height of the judged pictures, in pixels [default: 1280x720 on a GPU, 640x360 on a software driver,
+    /// 480x270 with --quick]
     #[arg(long, value_name = "WxH", value_parser = crate::drawing::size)]
     size: Option<[u32; 2]>,
     /// Scene, by name; give it once for each [default: all]
@@ -109,7 +113,12 @@ struct Study {
 impl Study {
     fn new(args: &Args, gpu: Gpu, figures: Figures) -> Result<Self> {
         let software = gpu.is_software();
-        let size = args.size.unwrap_or(if software { SOFTWARE_SIZE } else { GPU_SIZE });
+        let usual = match (software, args.quick) {
+            (true, true) => QUICK_SIZE,
+            (true, false) => SOFTWARE_SIZE,
+            (false, _) => GPU_SIZE,
+        };
+        let size = args.size.unwrap_or(usual);
         let usual = if args.quick {
             QUICK_STEP
         } else if software {
@@ -119,7 +128,8 @@ impl Study {
         };
         let step = args.every.unwrap_or(usual);
         let judging = Judging { size, flip: true, ..Judging::default() };
-        let contestants = contestants::all(&gpu, judging)?;
+        let mut contestants = contestants::all(&gpu, judging)?;
+        contestants.retain(|contestant| !args.quick || contestant.shown > Shown::InDetail);
         let measured = Measured::new(&gpu, size, step, &contestants);
         Ok(Self { gpu, figures, contestants, step, measured })
     }
@@ -177,7 +187,7 @@ impl Study {
                 continue;
             }
             let judged = contestant.evaluator.judge(&self.gpu, prepared, &view, &maps, &mut truth)?;
-            if self.figures.is_pictured(frame) && contestant.is_pictured {
+            if self.figures.is_pictured(frame) && contestant.shown == Shown::WithPictures {
                 let pixels = contestant.evaluator.picture(&self.gpu, prepared, &view, &maps)?;
                 self.measured.add_pictures(place, pixels, &judged, output)?;
             }

@@ -42,7 +42,7 @@ pub(crate) struct Args {
 pub(crate) fn run(args: &Args, interrupt: &Interrupt) -> Result<()> {
     ensure!(
         !args.job.drawing.changes_techniques(),
-        "report tune searches all of a technique itself; leave --filter, --bias, --color-format and --set out"
+        "report tune chooses the settings itself; leave out --filter, --bias, --color-format and --set"
     );
     let mut job = args.job.prepare()?;
     make_folder(&args.out)?;

@@ -15,13 +15,30 @@ use shadowfit_wgpu::ShadowMapDescriptor;
 pub(super) const RESOLUTION: u32 = 2048;
 /// Filter of all contestants.
 const FILTER: FilterKind = FilterKind::Pcf5x5;
-/// Our presets, and whether the page shows their pictures.
-const PRESETS: [(&str, bool); 5] =
-    [("xna-1", true), ("stable-4", true), ("histogram-4", false), ("windows-4", true), ("windows-8", false)];
+/// Our presets for a whole view, and where they are shown.
+const PRESETS: [(&str, Shown); 6] = [
+    ("xna-1", Shown::WithPictures),
+    ("stable-4", Shown::WithPictures),
+    ("calm-4", Shown::InDetail),
+    ("focused-4", Shown::InDetail),
+    ("windows-4", Shown::WithPictures),
+    ("windows-8", Shown::Everywhere),
+];
 /// Name of the recommended preset with traced edges.
 const TRACED: &str = "windows-4-traced";
 /// Engine whose pictures the page shows.
 const PICTURED_ENGINE: &str = "bevy";
+
+/// Where a contestant is shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Shown {
+    /// In the tables, but neither in the README nor by a quick look.
+    InDetail,
+    /// In all tables.
+    Everywhere,
+    /// In all tables, and with pictures on the page.
+    WithPictures,
+}
 
 /// A contestant.
 pub(super) struct Contestant {
@@ -30,8 +47,7 @@ pub(super) struct Contestant {
     pub(super) what: String,
     /// Its settings as TOML; empty for an engine.
     pub(super) settings: String,
-    /// Whether the page shows its pictures.
-    pub(super) is_pictured: bool,
+    pub(super) shown: Shown,
     pub(super) evaluator: Evaluator,
     kind: Kind,
 }
@@ -47,22 +63,22 @@ pub(super) fn all(gpu: &Gpu, judging: Judging) -> Result<Vec<Contestant>> {
     for engine in ENGINES {
         all.push(of_engine(gpu, judging, engine).with_context(|| engine.name)?);
     }
-    for (name, is_pictured) in PRESETS {
+    for (name, shown) in PRESETS {
         let named = NamedTechnique::find(name)?.with_resolution(RESOLUTION);
-        all.push(of_technique(gpu, judging, named, is_pictured).with_context(|| name)?);
+        all.push(of_technique(gpu, judging, named, shown).with_context(|| name)?);
     }
     let recommended = NamedTechnique::from(Technique { edges: Edges::Traced { samples: 1 }, ..Technique::default() });
     let traced = NamedTechnique { name: TRACED.to_owned(), ..recommended };
-    all.push(of_technique(gpu, judging, traced, false).context(TRACED)?);
+    all.push(of_technique(gpu, judging, traced, Shown::Everywhere).context(TRACED)?);
     Ok(all)
 }
 
-fn of_technique(gpu: &Gpu, judging: Judging, named: NamedTechnique, is_pictured: bool) -> Result<Contestant> {
+fn of_technique(gpu: &Gpu, judging: Judging, named: NamedTechnique, shown: Shown) -> Result<Contestant> {
     let renderer = Renderer::new(gpu, &ShadowMapDescriptor::from(&named.technique), 1)?;
     let mut evaluator = Evaluator::new(renderer, judging);
     evaluator.renderer.sun_mut().fitter_mut().set_technique(&named.technique);
     let (what, settings) = (named.description(), named.to_toml()?);
-    Ok(Contestant { name: named.name, what, settings, is_pictured, evaluator, kind: Kind::Technique(named.inputs) })
+    Ok(Contestant { name: named.name, what, settings, shown, evaluator, kind: Kind::Technique(named.inputs) })
 }
 
 fn of_engine(gpu: &Gpu, judging: Judging, engine: Engine) -> Result<Contestant> {
@@ -78,8 +94,8 @@ fn of_engine(gpu: &Gpu, judging: Judging, engine: Engine) -> Result<Contestant> 
     let evaluator = Evaluator::new(Renderer::new(gpu, &descriptor, 1)?, judging);
     let kind = Kind::Engine(engine, BiasSettings::automatic(FILTER));
     let (name, what) = (engine.name.to_owned(), engine.what.to_owned());
-    let is_pictured = engine.name == PICTURED_ENGINE;
-    Ok(Contestant { name, what, settings: String::new(), is_pictured, evaluator, kind })
+    let shown = if engine.name == PICTURED_ENGINE { Shown::WithPictures } else { Shown::Everywhere };
+    Ok(Contestant { name, what, settings: String::new(), shown, evaluator, kind })
 }
 
 impl Contestant {

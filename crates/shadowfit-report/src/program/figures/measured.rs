@@ -8,7 +8,7 @@ use shadowfit_report::peers::Frame;
 use shadowfit_report::run::{Columns, FrameInfo, FramePictures, Run, TechniqueRun};
 use shadowfit_truth::{Judged, PictureTally};
 
-use super::contestants::Contestant;
+use super::contestants::{Contestant, Shown};
 use super::scenes::FRAMES;
 use crate::scene::{columns, pool};
 
@@ -41,6 +41,7 @@ pub(super) struct JudgedFrame {
 /// The results of a contestant, a tally for each frame.
 pub(super) struct Row {
     pub(super) name: String,
+    pub(super) shown: Shown,
     what: String,
     settings: String,
     pub(super) tallies: Vec<PictureTally>,
@@ -51,6 +52,7 @@ impl Measured {
     pub(super) fn new(gpu: &Gpu, size: [u32; 2], step: u32, contestants: &[Contestant]) -> Self {
         let row = |contestant: &Contestant| Row {
             name: contestant.name.clone(),
+            shown: contestant.shown,
             what: contestant.what.clone(),
             settings: contestant.settings.clone(),
             tallies: Vec::new(),

@@ -5,6 +5,7 @@ use std::fmt::Write;
 use shadowfit_report::{markdown_table, readable};
 use shadowfit_truth::PictureTally;
 
+use super::contestants::Shown;
 use super::measured::{Measured, Row};
 
 /// A column of a Markdown table: its title, and the column of the sums.
@@ -59,7 +60,7 @@ pub(super) fn markdown(measured: &Measured) -> String {
         let _ = write!(
             text,
             "\n## {scene}\n\n{}",
-            table(measured, &COLUMNS, |row| measured.sum(row, |f| f.scene == *scene))
+            table(measured, &COLUMNS, Shown::InDetail, |row| measured.sum(row, |f| f.scene == *scene))
         );
     }
     text
@@ -67,23 +68,24 @@ pub(super) fn markdown(measured: &Measured) -> String {
 
 /// Returns the table over all frames, with the adapter.
 pub(super) fn overall(measured: &Measured) -> String {
-    whole(measured, &COLUMNS)
+    whole(measured, &COLUMNS, Shown::InDetail)
 }
 
-/// Returns the table over all frames with the columns that lead.
+/// Returns the README's table over all frames.
 pub(super) fn short(measured: &Measured) -> String {
-    whole(measured, &LEADING)
+    whole(measured, &LEADING, Shown::Everywhere)
 }
 
-fn whole(measured: &Measured, columns: &[Column]) -> String {
+fn whole(measured: &Measured, columns: &[Column], least: Shown) -> String {
     let ([width, height], frames) = (measured.size, measured.frames.len());
-    let table = table(measured, columns, |row| measured.sum(row, |_| true));
+    let table = table(measured, columns, least, |row| measured.sum(row, |_| true));
     format!("{table}\n{frames} frames of {width} × {height} pixels, {}.\n", measured.adapter)
 }
 
-/// Returns a table with a row for each contestant, the worst first.
-fn table(measured: &Measured, columns: &[Column], sum: impl Fn(&Row) -> PictureTally) -> String {
-    let mut rows: Vec<(&Row, PictureTally)> = measured.rows.iter().map(|row| (row, sum(row))).collect();
+/// Returns a table of the contestants that are shown in `least` or more places, the worst first.
+fn table(measured: &Measured, columns: &[Column], least: Shown, sum: impl Fn(&Row) -> PictureTally) -> String {
+    let rows = measured.rows.iter().filter(|row| row.shown >= least);
+    let mut rows: Vec<(&Row, PictureTally)> = rows.map(|row| (row, sum(row))).collect();
     rows.sort_by(|(_, a), (_, b)| value(b, "wrong %").total_cmp(&value(a, "wrong %")));
     let titles: Vec<String> =
         ["fit"].into_iter().chain(columns.iter().map(|(title, _)| *title)).map(str::to_owned).collect();
