@@ -163,8 +163,7 @@ impl Evaluator {
         Ok(truth.picture.as_ref().map_or(0.0, |reference| reference.mean_error(&mapped)))
     }
 
-    /// Draws the shaded picture of a view twice, in the judged size: with these shadow factors of its maps, and with true
-    /// ones. Factors are 0 to 1, rows from the top. Pixels with a negative factor are shaded with the maps.
+    /// Draws the shaded picture of a view twice, in the judged size: with the shadow factors of maps, and with true ones. Factors are 0 to 1, rows from the top. Pixels with a negative factor are shaded with the maps.
     ///
     /// # Errors
     ///
@@ -172,7 +171,7 @@ impl Evaluator {
     ///
     /// # Panics
     ///
-    /// If there are less factors than pixels.
+    /// If there are fewer factors than pixels.
     pub fn picture_pair(
         &mut self,
         gpu: &Gpu,

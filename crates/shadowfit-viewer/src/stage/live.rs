@@ -72,6 +72,14 @@ struct Sums {
     gpu_ms: Option<f32>,
 }
 
+/// A judged picture that was compared with the same picture with true shadows.
+#[derive(Debug)]
+struct Compared {
+    key: Key,
+    size: [u32; 2],
+    flip: Flip,
+}
+
 /// The judge of pictures.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum JudgedBy {
@@ -101,8 +109,10 @@ pub(super) struct Live {
     begun: Option<f32>,
     judged: Option<Judged>,
     sums: Option<Sums>,
-    /// The look of a picture that was judged, with its content.
-    flip: Option<(Key, Flip)>,
+    /// The comparison of a judged picture with true shadows.
+    compared: Option<Compared>,
+    /// Whether the last view was compared. The renderer then drew other pictures in between.
+    pub(super) has_compared: bool,
     /// The last pictures sent to the GPU, by their numbers.
     drawn: Vec<(u64, Drawn)>,
     /// The view of the previous frame, and the time since which it has not changed, by the stage's clock in
@@ -153,7 +163,8 @@ impl Live {
     /// Returns the latest figures, at a time of the stage's clock in seconds.
     pub(super) fn figures(&self, clock: f32) -> Option<JudgedFigures> {
         let Sums { of, figures, .. } = self.sums.as_ref()?;
-        let flip = self.flip.as_ref().filter(|(key, _)| *key == of.key).and_then(|(_, flip)| flip.mean());
+        let compared = self.compared.as_ref().filter(|compared| compared.key == of.key && compared.size == of.size);
+        let flip = compared.and_then(|compared| compared.flip.mean());
         Some(JudgedFigures { flip, ..judged_figures(figures.as_ref()?, of.size, clock - of.at) })
     }
 
@@ -188,6 +199,7 @@ impl Live {
         maps: &[FittedMap],
         size: [u32; 2],
     ) -> Result<bool> {
+        self.has_compared = false;
         if self.by == JudgedBy::Nobody {
             return Ok(false);
         }
@@ -209,13 +221,14 @@ impl Live {
         if self.waits && shot.is_unseen {
             return Ok(false);
         }
-        let may_compare = rests_since.is_some() && (self.waits || shot.clock - since >= STILL);
+        let rests = rests_since.is_some() && (self.waits || shot.clock - since >= STILL);
+        let may_compare = rests && shot.settings.view.judge && !IS_PAGE;
         if self.by == JudgedBy::Gpu {
             let maps_stay = self.judge_on_gpu(evaluator, shot, view, key, size)?;
             if may_compare {
                 self.compare_looks(evaluator, shot, view)?;
             }
-            return Ok(maps_stay);
+            return Ok(maps_stay && !self.has_compared);
         }
         let is_asked = shot.settings.view.mode.is_judged() || shot.settings.view.marks != ErrorMarks::Off;
         let waited = self.begun.map_or(f32::MAX, |begun| shot.clock - begun);
@@ -223,7 +236,7 @@ impl Live {
         let is_known = self.judged.as_ref().is_some_and(|judged| judged.key == key);
         let is_busy = self.background.as_ref().is_some_and(BackgroundJudge::is_busy) || !self.drawn.is_empty();
         if is_known && may_compare {
-            return self.compare_looks(evaluator, shot, view);
+            self.compare_looks(evaluator, shot, view)?;
         }
         if is_known || !is_due || is_busy {
             return Ok(false);
@@ -241,19 +254,26 @@ impl Live {
         Ok(maps_stay)
     }
 
-    /// Compares the judged picture with the same picture with true shadows, unless that was done. Returns
-    /// whether the maps were drawn for it. Browsers cannot wait for pictures to be read.
-    fn compare_looks(&mut self, evaluator: &mut Evaluator, shot: &mut Shot<'_>, view: &View) -> Result<bool> {
-        let Some(judged) = &self.judged else { return Ok(false) };
-        if IS_PAGE || self.flip.as_ref().is_some_and(|(key, _)| *key == judged.key) {
-            return Ok(false);
+    /// Compares the judged picture with the same picture with true shadows, unless that was done or another
+    /// comparison goes on. A comparison that fails is not repeated.
+    fn compare_looks(&mut self, evaluator: &mut Evaluator, shot: &mut Shot<'_>, view: &View) -> Result<()> {
+        let Some(judged) = &self.judged else { return Ok(()) };
+        let is_same = |compared: &Compared| compared.key == judged.key && compared.size == judged.size;
+        if self.compared.as_ref().is_some_and(|compared| is_same(compared) || compared.flip.is_busy()) {
+            return Ok(());
         }
         let of_gpu = if judged.seen.is_none() { evaluator.take_probe() } else { None };
-        let Some(probe) = judged.seen.as_ref().or(of_gpu.as_ref()) else { return Ok(false) };
-        let (probe, maps) = (probe.read(shot.gpu)?, &judged.key.maps);
-        let flip = Flip::measure(evaluator, shot, (view, maps), (&probe, judged.view.texture()), self.waits)?;
-        self.flip = Some((judged.key.clone(), flip));
-        Ok(true)
+        let Some(probe) = judged.seen.as_ref().or(of_gpu.as_ref()) else { return Ok(()) };
+        let (key, size, flip) = (judged.key.clone(), judged.size, Flip::default());
+        let compared = self.compared.insert(Compared { key, size, flip });
+        self.has_compared = true;
+        let (gpu, maps, classes) = (shot.gpu, &compared.key.maps, judged.view.texture());
+        let probe = probe.read(gpu)?;
+        match gpu.try_making(|| compared.flip.measure(evaluator, shot, (view, maps), (&probe, classes), self.waits)) {
+            // Without memory for the pictures, the error stays unknown.
+            Err(DeviceFault::OutOfMemory(_)) => Ok(()),
+            made => made?,
+        }
     }
 
     /// Makes rays of the current pose: at once if that is quick, otherwise on a thread for a later frame.

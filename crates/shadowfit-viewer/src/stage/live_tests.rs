@@ -2,6 +2,7 @@
 //! threads at intervals.
 
 use shadowfit::Technique;
+use shadowfit::settings::Edges;
 use shadowfit_params::tool::ViewMode;
 use shadowfit_render::{FlyInput, RenderTarget, UpdateKind, UpdatedRect};
 use shadowfit_scene::builtin::default_scene;
@@ -210,5 +211,27 @@ fn gpu_a_view_that_rests_is_compared_with_true_shadows_as_in_reports() {
         step(&mut stage);
         judge(&mut stage, &target);
         assert_eq!(flip(&stage), None, "another picture");
+    }
+}
+
+#[test]
+fn gpu_a_picture_that_was_compared_is_drawn_with_all_its_maps_and_its_traced_edges() {
+    for on_gpu in [true, false] {
+        let mut stage = Stage::new(renderer_gpu(), default_scene(), 4).expect("the default scene");
+        let traced = Technique { edges: Edges::Traced { samples: 1 }, ..Technique::default() };
+        stage.settings.technique = traced.with_resolution(256, 256);
+        stage.side.live.by = if on_gpu { JudgedBy::Gpu } else { JudgedBy::Threads };
+        stage.wait_for_rays();
+        let target = stage.target(SIZE);
+        let mut pictures = Vec::new();
+        for _ in 0..3 {
+            // This also asserts that no line says that edges are filtered.
+            draw(&mut stage, &target);
+            assert!(stage.side.statistics.shadow_draws > 0, "on the GPU: {on_gpu}");
+            pictures.push(target.read(&stage.gpu).expect("pixels"));
+        }
+        let flip = stage.judged_figures().and_then(|judged| judged.flip).expect("it was compared");
+        assert!(flip < 0.003, "edges are exact: {flip}");
+        assert!(pictures[0] == pictures[1] && pictures[1] == pictures[2], "on the GPU: {on_gpu}");
     }
 }

@@ -65,6 +65,9 @@ impl Side {
                 Ok(drawn) => maps_stay = drawn,
                 Err(error) => self.problem = Some(format!("{error:#}")),
             }
+            if self.live.has_compared {
+                self.forget_picture();
+            }
         }
         let picture = self.picture_key(shot, &fitted.maps, target);
         if picture.is_some() && picture == self.picture {
