@@ -7,6 +7,7 @@ use clap::Parser;
 use shadowfit::Technique;
 use shadowfit_adapter::{AdapterChoice, AdapterOptions};
 use shadowfit_classics::{SAMPLES, SampleValues};
+use shadowfit_egui::{KeyGroup, KeyHelp, KeyLayout, key_table};
 use shadowfit_params::tool::Settings;
 use shadowfit_params::{self as params, Kind, Number, Parameter, ParameterError};
 use shadowfit_study::NamedTechnique;
@@ -15,14 +16,24 @@ use crate::platform::output;
 use crate::play::script::{self, Line};
 use crate::scene_source::{OPTION_PREFIX, SceneSource};
 
+/// Returns the keys of the window and the exit codes, for `--help`.
+fn keys_and_exit_codes() -> String {
+    let line = |line: &KeyHelp| format!("    {:<22} {}\n", line.keys, line.does);
+    let group =
+        |group: &KeyGroup| format!("\n  {}\n{}", group.heading, group.keys.iter().map(line).collect::<String>());
+    let keys: String = key_table(KeyLayout::Window).iter().map(group).collect();
+    format!("Keys in the window, where H shows them too:\n{keys}")
+        + "\nExit codes: 0; 1 if --check found a fault; 2 if something was rejected or failed."
+}
+
 /// Fly through a scene under one sun, and show, measure and fix shadow acne, aliasing and clipping holes.
 #[derive(Clone, Debug, Default, Parser)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a flag of the command line")]
 #[command(
     name = "viewer",
     version,
-    after_help = "Press H in the window for its keys. Exit codes: 0; 1 if --check found a fault; 2 if something was \
-                  rejected or failed."
+    after_help = "Exit codes: 0; 1 if --check found a fault; 2 if something was rejected or failed. --help lists the keys.",
+    after_long_help = keys_and_exit_codes()
 )]
 pub struct Arguments {
     /// Scene: a glTF file (.gltf or .glb), or one of the built-in scenes courtyard, plain, arcade, forest and town.

@@ -34,18 +34,6 @@ fn the_docs_describe_every_view_under_its_key() {
     }
 }
 
-#[test]
-fn keys_in_the_docs_do_what_the_docs_say() {
-    let (page, keys) = (page(), key_table(KeyLayout::Window));
-    let row = |keys: &str, does: &str| format!("{keys}** | {} |", does.replace('|', "\\|"));
-    let known: Vec<String> = keys.iter().flat_map(|group| &group.keys).map(|line| row(line.keys, &line.does)).collect();
-    let rows: Vec<&str> = page.lines().filter_map(|line| line.strip_prefix("| **")).collect();
-    assert!(!rows.is_empty(), "{PAGE} has no table of keys");
-    for row in rows {
-        assert!(known.iter().any(|line| line == row), "{PAGE} has a row that is not in the table of keys: | **{row}");
-    }
-}
-
 /// Returns whether a line of code has options of the viewer.
 fn is_of_viewer(line: &str) -> bool {
     line.starts_with("--") || line.contains("cargo xtask run")

@@ -60,7 +60,7 @@ pub(super) const ROWS: &[Parameter] = &[
         group: Group::Bias,
         label: "Depth steps",
         unit: "steps",
-        help: "Least bias, in multiples of the rounding error: a step of the map's format, plus the rounding of \
+        help: "Minimum bias, in multiples of the rounding error: a step of the map's format, plus the rounding of \
            positions in deep maps and large triangles. 1 removes the bands that rounding causes; more only helps if \
            the hardware rounds badly.",
         kind: Kind::Number(Number {

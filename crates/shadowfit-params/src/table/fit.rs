@@ -29,7 +29,7 @@ pub(super) const ROWS: &[Parameter] = &[
         group: Group::Fit,
         label: "Fit",
         unit: "",
-        help: "The rule that fits a shadow map. Windows are sharp, and their shadow edges do not crawl. Focused maps \
+        help: "The rule that fits a shadow map. Windows are sharp, and their shadow edges hardly crawl. Focused maps \
            are as sharp, but not as stable. The sphere is as stable, but coarser. The frustum box is the simplest. The \
            XNA sample's rule loses casters outside the view.",
         kind: Kind::Choice(&[
@@ -42,7 +42,7 @@ pub(super) const ROWS: &[Parameter] = &[
                 id: "windows",
                 label: "Windows",
                 help: "Rectangles on a texel grid that is fixed to the world, each placed where it improves the most \
-                       visible pixels. Sharp without splits, and edges do not crawl when the camera moves or turns.",
+                       visible pixels. Sharp without splits, and edges hardly crawl when the camera moves or turns.",
             },
             ChoiceOption {
                 id: "oriented",
@@ -94,10 +94,10 @@ pub(super) const ROWS: &[Parameter] = &[
         help: "Shape and rotation of the rectangle that the oriented and the focused fit place around the covered \
            area. The smallest area gives the finest texels; a square makes them equally fine in both directions.",
         kind: Kind::Choice(&[
-            ChoiceOption { id: "minimum_area", label: "Least area", help: "Turned to the smallest area." },
+            ChoiceOption { id: "minimum_area", label: "Smallest area", help: "Turned to the smallest area." },
             ChoiceOption {
                 id: "minimum_square",
-                label: "Least square",
+                label: "Smallest square",
                 help: "The smallest square: texels are as wide as they are high.",
             },
             ChoiceOption {
@@ -157,7 +157,7 @@ pub(super) const ROWS: &[Parameter] = &[
     Parameter {
         id: "fit.least_texel",
         group: Group::Fit,
-        label: "Least texel",
+        label: "Minimum texel",
         unit: "m",
         help: "Lower limit of the texel size; 0 means no limit. It keeps edges uniform when the camera comes close. A \
            coarser map also covers more, and so moves less. Soft filters set their own limit.",

@@ -106,7 +106,7 @@ pub(super) const ROWS: &[Parameter] = &[
     Parameter {
         id: "softness.floor",
         group: Group::Softness,
-        label: "Least radius",
+        label: "Minimum radius",
         unit: "texels",
         help: "Soft edges are at least this wide to either side, which hides the texels of coarse maps. Raising it \
            above the greatest radius raises that too.",
@@ -124,7 +124,7 @@ pub(super) const ROWS: &[Parameter] = &[
     Parameter {
         id: "softness.ceiling",
         group: Group::Softness,
-        label: "Greatest radius",
+        label: "Maximum radius",
         unit: "texels",
         help: "Soft edges are at most this wide to either side: texels are never so fine that an edge would need more \
            of them, and maps keep this many texels free at their borders. A large value looks smoother and needs more \

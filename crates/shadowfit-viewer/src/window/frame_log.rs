@@ -11,7 +11,7 @@ use crate::platform::output;
 const LOG_EVERY: (u64, Duration) = (60, Duration::from_secs(4));
 /// Least frame time that is distinguished, in milliseconds.
 const LEAST_MS: f64 = 0.01;
-/// Factor from one class of times to the next.
+/// Ratio of the times of neighbouring bins.
 const STEP: f64 = 1.02;
 /// Number of classes: up to some minutes.
 const CLASSES: usize = 900;
