@@ -28,7 +28,7 @@ fn stage(technique: &str) -> Stage {
     stage
 }
 
-/// Shows an artefact. Its settings keep the technique's maps, except windows, which show no artefacts.
+/// Shows an artefact. Its settings keep the technique's maps. Windows show no artefacts and are replaced.
 fn show(stage: &mut Stage, artefact: Artefact) {
     let before = stage.settings.technique;
     stage.show_artefact(artefact);

@@ -83,9 +83,10 @@ fn every_command_of_the_docs_is_one_of_ours_with_options_that_it_has() {
             let is_help = |error: &clap::Error| error.kind() == clap::error::ErrorKind::DisplayHelp;
             assert!(parsed.is_ok() || parsed.as_ref().is_err_and(is_help), "{at}");
         } else if matches!(first, Some("run" | "test" | "bench")) {
-            for (option, folders) in
-                [("-p", ["crates", "tests"]), ("--example", ["examples", "crates/bevy-shadowfit/examples"])]
-            {
+            // The plugin for Bevy is a workspace of its own, with its own page.
+            let is_of_bevy = Path::new(&command.page).starts_with("crates/bevy-shadowfit");
+            let examples = if is_of_bevy { "crates/bevy-shadowfit/examples" } else { "examples" };
+            for (option, folders) in [("-p", ["crates", "tests"]), ("--example", [examples; 2])] {
                 let named = command.words.iter().position(|word| word == option).map(|at| &command.words[at + 1]);
                 let exists = |name: &String| {
                     let short = name.trim_start_matches("shadowfit-");

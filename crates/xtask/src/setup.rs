@@ -115,9 +115,9 @@ fn remedy(debian_like: bool, is_root: bool, packages: &[&str]) -> Remedy {
     let names = packages.join(" ");
     match (debian_like, is_root) {
         (true, true) => Remedy::Install,
-        (true, false) => {
-            Remedy::Say(format!("to install what is missing: sudo apt-get install --no-install-recommends {names}"))
-        }
+        (true, false) => Remedy::Say(format!(
+            "to install the missing packages: sudo apt-get install --no-install-recommends {names}"
+        )),
         (false, _) => Remedy::Say(format!("missing here, by its Debian name (other systems differ): {names}")),
     }
 }
@@ -227,7 +227,7 @@ mod tests {
         assert_eq!(
             remedy(true, false, &packages),
             Remedy::Say(
-                "to install what is missing: sudo apt-get install --no-install-recommends libvulkan1 xvfb".into()
+                "to install the missing packages: sudo apt-get install --no-install-recommends libvulkan1 xvfb".into()
             )
         );
         for is_root in [false, true] {

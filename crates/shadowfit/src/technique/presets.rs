@@ -41,13 +41,13 @@ pub static PRESETS: [Preset; 10] = [
     },
     Preset {
         name: "oriented-1",
-        summary: "one map, least rectangle around the frustum",
+        summary: "one map, smallest rectangle around the frustum",
         advice: "For a small view without known boxes: the finest texels that one map can have there.",
         make: || single(FitKind::Oriented),
     },
     Preset {
         name: "focused-1",
-        summary: "one map, least rectangle around the boxes in view",
+        summary: "one map, smallest rectangle around the boxes in view",
         advice: "For a turntable, a board or a room. Pass a box for each object, and boxes of triangle clusters for \
                  large objects.",
         make: || single(FitKind::Focused),
@@ -61,7 +61,7 @@ pub static PRESETS: [Preset; 10] = [
     },
     Preset {
         name: "focused-4",
-        summary: "4 maps, least rectangles around the boxes in view, splits from the last frame's depths",
+        summary: "4 maps, smallest rectangles around the boxes in view, splits from the last frame's depths",
         advice: "For single pictures, and for the fewest wrong pixels per frame with four maps. Edges crawl when the \
                  camera moves. Splits come from the boxes if no earlier frame is known.",
         make: || several(FitKind::Focused, SplitScheme::FromHistogram, Stabilise::Off),

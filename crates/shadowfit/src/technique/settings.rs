@@ -25,13 +25,13 @@ pub enum FitKind {
     /// Axis-aligned box of the camera frustum in the light's axes, tight along the light too.
     /// [`MapSettings::casters`] places the near plane.
     FrustumAabb,
-    /// Least rectangle around the camera frustum as seen from the light, turned as set by
+    /// Smallest rectangle around the camera frustum as seen from the light, turned as set by
     /// [`Shape::rectangle`]. It is the tightest fit without knowledge of the scene.
     Oriented,
     /// Minimal enclosing sphere of the camera frustum, on a fixed world grid of whole texels. Shadow edges do
     /// not crawl when the camera moves or turns.
     Sphere,
-    /// Least rectangle around the visible parts of the receivers' boxes, turned as set by
+    /// Smallest rectangle around the visible parts of the receivers' boxes, turned as set by
     /// [`Shape::rectangle`]. Without boxes it equals [`Self::Oriented`]. The default.
     #[default]
     Focused,

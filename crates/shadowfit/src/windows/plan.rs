@@ -94,7 +94,7 @@ const GREATEST_RATIO: i32 = 20 * 8;
 /// Changes of a window's texels to try, in eighths of an octave.
 const CHANGES: [i32; 6] = [4, -4, 8, -8, 2, -2];
 
-/// Share of the best place's cost that a window must hold to stay in its place.
+/// Share of the cells' cost inside its best place that a window must contain to stay in its place.
 const HOLDS: f32 = 0.993;
 
 /// Factor for the share of the cost that a window held at its last search. Below it, the window is searched
@@ -172,8 +172,8 @@ impl Planner<'_> {
         plan
     }
 
-    /// Moves each window that no longer holds most of the cost that its best place would hold. `holds` has
-    /// the shares of the cost that windows held at their last searches. Each call searches one window in
+    /// Moves each window that no longer contains most of the cells' cost that its best place would contain.
+    /// `holds` has the shares of the cost that the windows contained at their last searches. Each call searches one window in
     /// turn, and the windows whose shares have fallen.
     pub(super) fn move_windows(&self, plan: &mut Plan, best: &Plan, holds: &mut [f32; MAX_MAPS], turn: u32) {
         let mut left = [1.0; MAX_CELLS];
