@@ -33,7 +33,7 @@ const FIGURES: [Figure; 4] = [
     (
         "FLIP",
         "How different the picture looks from the same picture with true shadows: the mean FLIP error of rendering \
-         papers, 0 (equal) to 1. Measured once the view rests, but not in browsers.",
+         papers, 0 (equal) to 1. Measured once nothing moves (Space pauses), but not in browsers.",
         |judged| judged.flip.map(|flip| format!("{flip:.4}")),
     ),
     (
