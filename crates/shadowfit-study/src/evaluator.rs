@@ -140,6 +140,18 @@ impl Evaluator {
         Ok(pixels?)
     }
 
+    /// Draws a frame with these shadow factors, rows from the top, and reads it.
+    fn read_with_factors(
+        &mut self,
+        gpu: &Gpu,
+        scene: &mut PreparedScene,
+        frame: &Frame<'_>,
+        factors: &[f32],
+    ) -> Result<Vec<u8>> {
+        let factors = factors_texture(gpu, factors, self.judging.size);
+        self.read_picture(gpu, scene, &Frame { factors: Some(&factors), ..*frame })
+    }
+
     /// Returns the mean ꟻLIP error of the shaded picture of a view against the same picture with true shadows, which is
     /// drawn once for all techniques of a frame. Surfaces that face away from the light have no light in it.
     fn flip(
@@ -154,16 +166,15 @@ impl Evaluator {
         if let (None, Some(traced)) = (&truth.picture, truth.get()) {
             let lit = |point: &Option<TruthPoint>| point.map_or(-1.0, |point: TruthPoint| point.lit);
             let lit: Vec<f32> = traced.points.iter().map(lit).collect();
-            let factors = factors_texture(gpu, &lit, self.judging.size);
             let atmosphere = view.atmosphere();
-            let frame = Frame { factors: Some(&factors), ..view.frame(maps, &atmosphere) };
-            let picture = self.read_picture(gpu, scene, &frame)?;
+            let picture = self.read_with_factors(gpu, scene, &view.frame(maps, &atmosphere), &lit)?;
             truth.picture = Some(FlipReference::new(&picture, self.judging.size));
         }
         Ok(truth.picture.as_ref().map_or(0.0, |reference| reference.mean_error(&mapped)))
     }
 
-    /// Draws the shaded picture of a view twice, in the judged size: with the shadow factors of maps, and with true ones. Factors are 0 to 1, rows from the top. Pixels with a negative factor are shaded with the maps.
+    /// Draws the shaded picture of a view twice, in the judged size: with the shadow factors of maps, and with true ones.
+    /// Factors are 0 to 1, rows from the top. Pixels with a negative factor are shaded with the maps.
     ///
     /// # Errors
     ///
@@ -180,13 +191,11 @@ impl Evaluator {
         maps: &[FittedMap],
         [mapped, truth]: [&[f32]; 2],
     ) -> Result<PicturePair> {
-        let (size, atmosphere) = (self.judging.size, view.atmosphere());
-        let mut draw = |factors: &[f32], maps_stay: bool| {
-            let factors = factors_texture(gpu, factors, size);
-            let frame = Frame { factors: Some(&factors), maps_stay, ..view.frame(maps, &atmosphere) };
-            self.read_picture(gpu, scene, &frame)
-        };
-        Ok(PicturePair { mapped: draw(mapped, false)?, truth: draw(truth, true)?, size })
+        let atmosphere = view.atmosphere();
+        let frame = view.frame(maps, &atmosphere);
+        let mapped = self.read_with_factors(gpu, scene, &frame, mapped)?;
+        let truth = self.read_with_factors(gpu, scene, &Frame { maps_stay: true, ..frame }, truth)?;
+        Ok(PicturePair { mapped, truth, size: self.judging.size })
     }
 
     /// Draws the maps of a view and judges their shadows.
