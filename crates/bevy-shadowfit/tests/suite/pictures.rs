@@ -5,8 +5,8 @@ use std::sync::{Arc, Mutex};
 use bevy::app::PluginsState;
 use bevy::camera::{ImageRenderTarget, RenderTarget};
 use bevy::core_pipeline::prepass::DepthPrepass;
-use bevy::light::CascadeShadowConfig;
 use bevy::light::cascade::Cascades;
+use bevy::light::{CascadeShadowConfig, CascadeShadowConfigBuilder};
 use bevy::prelude::*;
 use bevy::render::RenderPlugin;
 use bevy::render::gpu_readback::{Readback, ReadbackComplete};
@@ -168,4 +168,18 @@ fn gpu_windows_do_not_darken_lit_surfaces() {
     // Only the soft edges of shadows are between light and shadow.
     let [bevys, windows] = [None, Some(Fit::Windows)].map(dimmed);
     assert!(bevys > 0 && windows <= bevys, "{windows} dimmed pixels, with Bevy's cascades {bevys}");
+}
+
+#[test]
+fn gpu_a_single_cascade_has_the_biases_of_cascades_because_bevys_code_reads_it() {
+    let mut stage = stage(Some(Fit::Windows), true, false, Msaa::Off);
+    let bias =
+        |stage: &Stage| stage.app.world().get::<DirectionalLight>(stage.light).expect("a light").shadow_normal_bias;
+    let of_windows = bias(&stage);
+    let one = CascadeShadowConfigBuilder { num_cascades: 1, ..default() }.build();
+    stage.app.world_mut().entity_mut(stage.light).insert(one);
+    for _ in 0..4 {
+        stage.app.update();
+    }
+    assert!(bias(&stage) > 2.0 * of_windows, "{} and {of_windows}", bias(&stage));
 }
