@@ -173,6 +173,7 @@ impl ShadowMapDescriptor {
     pub(crate) fn texture_format(&self) -> wgpu::TextureFormat {
         match self.format {
             MapFormat::Depth32Float => wgpu::TextureFormat::Depth32Float,
+            MapFormat::Depth24Unorm => wgpu::TextureFormat::Depth24Plus,
             MapFormat::Depth16Unorm => wgpu::TextureFormat::Depth16Unorm,
             MapFormat::R32Float => wgpu::TextureFormat::R32Float,
             MapFormat::R16Float => wgpu::TextureFormat::R16Float,

@@ -81,7 +81,7 @@ impl WgslOptions<'_> {
 /// group that is passed to them.
 pub fn caster_wgsl(descriptor: &ShadowMapDescriptor, options: &WgslOptions<'_>) -> String {
     let color = match descriptor.format {
-        MapFormat::Depth32Float | MapFormat::Depth16Unorm => "",
+        MapFormat::Depth32Float | MapFormat::Depth24Unorm | MapFormat::Depth16Unorm => "",
         MapFormat::R32Float | MapFormat::R16Float | MapFormat::R8Grey => include_str!("wgsl/color_float.wgsl"),
         MapFormat::Rgba8Packed => include_str!("wgsl/color_packed.wgsl"),
     };
@@ -197,7 +197,7 @@ fn loads_texels(descriptor: &ShadowMapDescriptor) -> bool {
 /// Returns the WGSL that declares the texture of a format, and the WGSL that reads one of its texels.
 fn texture(format: MapFormat) -> (&'static str, &'static str) {
     match format {
-        MapFormat::Depth32Float | MapFormat::Depth16Unorm => {
+        MapFormat::Depth32Float | MapFormat::Depth24Unorm | MapFormat::Depth16Unorm => {
             (include_str!("wgsl/texture_depth.wgsl"), include_str!("wgsl/texel_depth.wgsl"))
         }
         MapFormat::R32Float | MapFormat::R16Float | MapFormat::R8Grey => {

@@ -148,6 +148,8 @@
 //! | feature | adds |
 //! |---|---|
 //! | `std` (default) | `alloc`, and glam with the standard library |
+//! | `cascades` (default) | techniques with [`Cascades`] and [`SingleMap`]; without it their fits fail with [`FitError::MissingFeature`] |
+//! | `windows` (default) | techniques with [`Windows`], such as [`Technique::default`]; without it their fits fail in the same way |
 //! | `alloc` | [`ShadowFitter`], [`VisibleDemand`], [`StaticBoxes`], `Clusters` and [`cache`]; needs an allocator but not the standard library |
 //! | `serde` | `Serialize` and `Deserialize` for all settings, for inputs and outputs that own their data, and for the state between frames; to store `Clusters`, store their [`Aabb`]s and [`NormalCone`]s |
 //! | `bytemuck` | `Pod` and `Zeroable` for [`Aabb`], [`Sphere`](culling::Sphere), [`OrientedBox`](culling::OrientedBox), [`NormalCone`], [`Bias`], [`SpotBias`](spot::SpotBias) and [`CasterPlanes`](culling::CasterPlanes) |
@@ -156,6 +158,14 @@
 //! The vector and matrix types are from the re-exported [`glam`], version 0.33 (from 0.33.2) or 0.34.
 #![no_std]
 #![forbid(unsafe_code)]
+#![cfg_attr(
+    not(all(feature = "cascades", feature = "windows")),
+    allow(
+        dead_code,
+        unused_imports,
+        reason = "a build with one kind of maps does not use the parts that only the other kind needs"
+    )
+)]
 
 #[cfg(feature = "alloc")]
 extern crate alloc;
@@ -232,9 +242,18 @@ mod projection;
 
 mod fits;
 
+#[cfg(feature = "cascades")]
 mod cascades;
-
+#[cfg(feature = "windows")]
 mod windows;
+
+/// Stand-ins for the kinds of maps that a build leaves out. Their fits fail.
+#[cfg(not(all(feature = "cascades", feature = "windows")))]
+mod left_out;
+#[cfg(not(feature = "cascades"))]
+use left_out::cascades;
+#[cfg(not(feature = "windows"))]
+use left_out::windows;
 
 pub mod bias;
 pub mod culling;

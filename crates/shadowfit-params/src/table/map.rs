@@ -90,6 +90,12 @@ pub(super) const ROWS: &[Parameter] = &[
                 help: "A depth texture, compared by the sampler.",
             },
             ChoiceOption {
+                id: "depth24_unorm",
+                label: "Depth 24-bit",
+                help: "A depth texture with 16,777,216 steps over the map's depth range, the default of WebGL engines. \
+                       Some devices store it as 32-bit floats.",
+            },
+            ChoiceOption {
                 id: "depth16_unorm",
                 label: "Depth 16-bit",
                 help: "A depth texture with half the memory, and 65,536 steps over the map's depth range.",
@@ -118,7 +124,7 @@ pub(super) const ROWS: &[Parameter] = &[
                        of acne.",
             },
         ]),
-        field: choice!(technique.format: MapFormat [Depth32Float, Depth16Unorm, R32Float, R16Float, Rgba8Packed, R8Grey]),
+        field: choice!(technique.format: MapFormat [Depth32Float, Depth24Unorm, Depth16Unorm, R32Float, R16Float, Rgba8Packed, R8Grey]),
         inert: always_active,
     },
     Parameter {

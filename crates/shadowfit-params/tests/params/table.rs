@@ -162,6 +162,7 @@ fn option_names_select_their_variants() {
 fn names_of_formats_and_filters_select_them() {
     let formats = [
         ("depth32float", MapFormat::Depth32Float),
+        ("depth24_unorm", MapFormat::Depth24Unorm),
         ("depth16_unorm", MapFormat::Depth16Unorm),
         ("r32float", MapFormat::R32Float),
         ("r16_float", MapFormat::R16Float),

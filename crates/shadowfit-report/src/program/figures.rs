@@ -14,6 +14,7 @@ use shadowfit_study::{Judging, PreparedScene, SharedTruth, View, make_folder, pr
 use crate::interrupt::Interrupt;
 
 mod contestants;
+mod glb;
 mod measured;
 mod peers_check;
 mod scenes;
@@ -53,6 +54,9 @@ pub(crate) struct Args {
     /// Only write the frames to a file of scenarios, for the fits of other programs
     #[arg(long, value_name = "FILE")]
     write_scenarios: Option<PathBuf>,
+    /// Only write the frames and the scenes, as binary glTF, to a folder, for measurements in other engines
+    #[arg(long, value_name = "DIR")]
+    write_scenes: Option<PathBuf>,
     /// Folder with fit files that the engines' own code wrote for these frames: compares them with our versions
     #[arg(long, value_name = "DIR")]
     peers: Option<PathBuf>,
@@ -69,6 +73,15 @@ pub(crate) fn run(args: &Args, interrupt: &Interrupt) -> Result<bool> {
     if let Some(file) = &args.write_scenarios {
         write_whole(file, serde_json::to_string(&figures.scenarios)?.as_bytes())?;
         print(format_args!("{}: {} frames\n", file.display(), figures.scenarios.frames.len()))?;
+        return Ok(true);
+    }
+    if let Some(folder) = &args.write_scenes {
+        make_folder(folder)?;
+        write_whole(&folder.join("scenarios.json"), serde_json::to_string(&figures.scenarios)?.as_bytes())?;
+        for scene in &figures.scenes {
+            write_whole(&folder.join(format!("{}.glb", scene.name)), &glb::glb(&scene.scene)?)?;
+        }
+        print(format_args!("{}: {} scenes\n", folder.display(), figures.scenes.len()))?;
         return Ok(true);
     }
     let peers = match &args.peers {

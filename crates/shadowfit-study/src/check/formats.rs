@@ -150,6 +150,7 @@ impl Found {
 const fn name(format: MapFormat) -> &'static str {
     match format {
         MapFormat::Depth32Float => "32-bit depth",
+        MapFormat::Depth24Unorm => "24-bit depth",
         MapFormat::Depth16Unorm => "16-bit depth",
         MapFormat::R32Float => "32-bit colour",
         MapFormat::R16Float => "16-bit colour",

@@ -112,6 +112,11 @@ pub enum FitError {
     },
     /// The map does not lie on the world's texel grid.
     NotOnGrid,
+    /// The technique has a kind of maps that this build of the crate leaves out.
+    MissingFeature {
+        /// The feature that adds this kind of maps.
+        feature: &'static str,
+    },
     /// A filter needs the distances of casters, but the maps clamp depths
     /// ([`CasterPolicy::DepthClamp`](crate::settings::CasterPolicy::DepthClamp)), which loses them.
     ClampedCasters,
@@ -161,6 +166,9 @@ impl fmt::Display for FitError {
                 write!(f, "the matrix is not an orthographic view-projection of this light: {why}")
             }
             Self::NotOnGrid => f.write_str(NOT_ON_GRID),
+            Self::MissingFeature { feature } => {
+                write!(f, "this build of shadowfit has no {feature}; enable the feature `{feature}`")
+            }
             Self::ClampedCasters => f.write_str(CLAMPED),
             Self::ZeroResolution { resolution: UVec2 { x, y } } => {
                 write!(f, "the map's resolution is {x} × {y}; give at least one texel each way")

@@ -25,6 +25,7 @@ impl DepthStorage {
     pub(crate) const fn of(format: MapFormat) -> Self {
         match format {
             MapFormat::Depth32Float | MapFormat::R32Float | MapFormat::Rgba8Packed => Self::Float32,
+            MapFormat::Depth24Unorm => Self::Unorm24,
             MapFormat::Depth16Unorm => Self::Unorm16,
             MapFormat::R16Float => Self::Float16,
             MapFormat::R8Grey => Self::Unorm8,

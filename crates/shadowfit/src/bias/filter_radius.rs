@@ -70,6 +70,12 @@ impl FilterRadius {
         Self { disc: Vec2::splat(radius), ..self }
     }
 
+    /// Returns this radius with its look-ups spread over a disc of `radius` metres across the light in a map.
+    #[must_use]
+    pub fn over_disc_of_metres(self, radius: f32, fit: &LightProjection) -> Self {
+        Self { disc: Vec2::splat(radius) / fit.texel_size, ..self }
+    }
+
     /// Returns the greatest distance per axis, E: the taps plus the longer radius of the disc.
     pub fn per_axis(self) -> f32 {
         self.taps + self.disc.x.max(self.disc.y)

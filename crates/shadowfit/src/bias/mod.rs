@@ -184,6 +184,34 @@ impl Bias {
         Self { constant_depth, receiver_plane: reach.per_axis(), ..Self::default() }.checked()
     }
 
+    /// Returns a bias as [`Self::automatic`] does, but as a constant depth alone, for shaders that can only
+    /// subtract a constant. It covers a plane with the given geometric normal (world axes, any length, on the
+    /// light's side), usually the ground, and all planes that face the light at least as directly. Other
+    /// planes may shadow themselves. For the ground under a sun of elevation e it is about
+    /// `√2 · E · texel · cot e` along the light.
+    ///
+    /// # Errors
+    ///
+    /// Returns the errors of [`Self::automatic`], and [`FitError::BadDirection`] for the normal.
+    pub fn automatic_constant(
+        reach: impl Into<FilterRadius>,
+        storage: impl Into<DepthStorage>,
+        fit: &LightProjection,
+        normal: Vec3,
+    ) -> Result<Self, FitError> {
+        let cosine = Slope::of(fit, normal)?.cosine.max(f64::from(MIN_COSINE));
+        let tangent = libm::sqrt((1.0 - cosine * cosine).max(0.0)) / cosine;
+        let offset = Self::automatic(reach, storage, fit)?;
+        let depth = f64::from(offset.normal_offset) * tangent / f64::from(fit.depth_range);
+        Self { constant_depth: offset.constant_depth + depth as f32, ..Self::default() }.checked()
+    }
+
+    /// Returns the bias for maps that store only the back faces of closed casters. A lit surface is nearer to
+    /// the light than the back faces behind it, so the bias only covers the [`depth_precision`].
+    pub fn back_faces(storage: impl Into<DepthStorage>, fit: &LightProjection) -> Self {
+        Self { constant_depth: depth_precision(fit, storage), ..Self::default() }
+    }
+
     /// Returns the offset and depth of this bias on a plane with the given geometric normal (world axes, any
     /// length, on the light's side), as a shader computes it.
     ///
@@ -257,6 +285,25 @@ impl BiasSettings {
             receiver_plane: 0.0,
             depth_steps: 1.0,
         }
+    }
+}
+
+impl BiasSettings {
+    /// Returns biases as [`Self::automatic_normal_offset`] does, but as a constant alone, for shaders that can
+    /// only subtract a constant. It covers level ground under a sun of this elevation, in radians, and all
+    /// planes that face the light at least as directly. Other planes may shadow themselves.
+    /// [`Bias::automatic_constant`] computes the bias of one map.
+    pub fn automatic_constant(filter: FilterKind, softness: &Softness, elevation: f32) -> Self {
+        let sine = libm::sinf(elevation).clamp(MIN_COSINE, 1.0);
+        let tangent = libm::sqrtf(1.0 - sine * sine) / sine;
+        let offset = automatic_normal_offset(softness.filter_radius(filter) + HARDWARE_SNAP);
+        Self { constant: SPARE_TEXELS + offset * tangent, ..Self::back_faces() }
+    }
+
+    /// Returns biases for maps that store only the back faces of closed casters. A lit surface is nearer to
+    /// the light than the back faces behind it, so the biases only cover rounding.
+    pub const fn back_faces() -> Self {
+        Self { constant: 0.0, slope: 0.0, normal_offset: 0.0, receiver_plane: 0.0, depth_steps: 1.0 }
     }
 }
 

@@ -375,6 +375,10 @@ pub enum MapFormat {
     /// 32-bit float depth attachment, compared by the sampler. The default.
     #[default]
     Depth32Float,
+    /// 24-bit depth attachment, compared by the sampler, with steps of 1/16,777,215 of the map's depth range:
+    /// the default of WebGL engines. In `shadowfit-wgpu` it is the format `Depth24Plus`, which some devices
+    /// store as 32-bit floats.
+    Depth24Unorm,
     /// 16-bit depth attachment, compared by the sampler. It needs half the memory and has steps of 1/65,535
     /// of the map's depth range.
     Depth16Unorm,
@@ -392,13 +396,20 @@ pub enum MapFormat {
 
 impl MapFormat {
     /// All formats, depth attachments first.
-    pub const ALL: [Self; 6] =
-        [Self::Depth32Float, Self::Depth16Unorm, Self::R32Float, Self::R16Float, Self::Rgba8Packed, Self::R8Grey];
+    pub const ALL: [Self; 7] = [
+        Self::Depth32Float,
+        Self::Depth24Unorm,
+        Self::Depth16Unorm,
+        Self::R32Float,
+        Self::R16Float,
+        Self::Rgba8Packed,
+        Self::R8Grey,
+    ];
 
     /// Returns whether the format is a depth attachment, which samplers compare. Other formats are colours,
     /// compared in the shader.
     pub const fn is_depth(self) -> bool {
-        matches!(self, Self::Depth32Float | Self::Depth16Unorm)
+        matches!(self, Self::Depth32Float | Self::Depth24Unorm | Self::Depth16Unorm)
     }
 }
 

@@ -100,7 +100,7 @@ impl<'a> Picture<'a> {
         let met = if t >= enter && t <= leave { MET } else { BESIDE };
         let is_lit = normal.dot(self.plane.axes.z.as_dvec3()) * -across > 0.0;
         if is_lit && t.is_finite() {
-            let t = t.clamp(enter, leave);
+            let t = t.max(enter).min(leave);
             let slide = |v: DVec3| v - along * (v.dot(normal) / across);
             let seen = |v: DVec3| self.plane.of(self.plane.axes.project(slide(v))).as_vec2();
             let texel = f64::from(needed_texel(seen(self.right), seen(self.down)));

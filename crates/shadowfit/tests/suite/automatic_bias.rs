@@ -4,14 +4,14 @@
 //! rasteriser's snap, rounded to the format. Positions and biases of the receiver are in f32, and the sampler
 //! snaps texture coordinates.
 
-use std::f32::consts::FRAC_PI_2;
+use std::f32::consts::{FRAC_PI_2, SQRT_2};
 
 use proptest::prelude::*;
 use proptest::strategy::Union;
-use shadowfit::bias::{FilterRadius, MIN_COSINE, depth_gradient, depth_precision, normal_offset};
+use shadowfit::bias::{FilterRadius, MIN_COSINE, depth_gradient, depth_precision, normal_offset, receiver_plane_depth};
 use shadowfit::diagnostics::{DepthStorage, acne_margin, depth_step_at};
 use shadowfit::glam::{DMat3, DVec2, DVec3, UVec2, Vec3, Vec3Swizzles};
-use shadowfit::settings::{BiasSettings, FilterKind, FitKind, MapFormat};
+use shadowfit::settings::{BiasSettings, FilterKind, FitKind, MapFormat, Softness};
 use shadowfit::{Bias, DepthConvention, LightProjection};
 
 use crate::filters::{Filter, filters};
@@ -250,7 +250,8 @@ fn one_depth_step_clears_a_plane_in_every_coarse_format_and_none_does_not() {
         let fit = fitted(&camera, crate::support::DIRECTION, &settings);
         for format in MapFormat::ALL {
             assert!(!has_bands(&fit, format, 1.0), "{format:?} {depth:?}");
-            let is_coarse = DepthStorage::from(format) != DepthStorage::Float32;
+            // Steps of 24 bits are as fine as the rounding of 32-bit floats.
+            let is_coarse = ![DepthStorage::Float32, DepthStorage::Unorm24].contains(&format.into());
             assert_eq!(has_bands(&fit, format, 0.0), is_coarse, "{format:?} {depth:?}");
             assert_eq!(
                 has_bands(&fit, format, 0.9),
@@ -258,6 +259,55 @@ fn one_depth_step_clears_a_plane_in_every_coarse_format_and_none_does_not() {
                 "{format:?} {depth:?}: it is no larger than it must be"
             );
         }
+    }
+}
+
+/// Returns the direction of light that travels down at an elevation.
+fn sunlight(elevation: f32) -> Vec3 {
+    Vec3::new(elevation.cos() * 0.6, -elevation.sin(), elevation.cos() * 0.8)
+}
+
+#[test]
+fn a_constant_bias_grows_with_the_slope_of_the_ground_and_not_beyond_its_need() {
+    let softness = Softness::default();
+    for degrees in [5.0_f32, 20.0, 45.0, 80.0] {
+        let direction = sunlight(degrees.to_radians());
+        let fit = fitted(&crate::support::camera(), direction, &exact(FitKind::FrustumAabb));
+        let filter = FilterKind::Pcf3x3;
+        let bias = Bias::automatic_constant(filter, DepthStorage::Unorm24, &fit, Vec3::Y).unwrap();
+        let least = receiver_plane_depth(&fit, FilterRadius::from(filter), Vec3::Y).unwrap();
+        let spare = depth_precision(&fit, DepthStorage::Unorm24) + 0.01 * least;
+        assert!((least..least * SQRT_2 * 1.01 + spare * 2.0).contains(&bias.constant_depth), "{degrees}°: {bias:?}");
+        assert_eq!((bias.normal_offset, bias.slope_depth, bias.receiver_plane), (0.0, 0.0, 0.0));
+        // The settings of a technique know the elevation only.
+        let settings = BiasSettings::automatic_constant(filter, &softness, degrees.to_radians());
+        let by_settings = Bias::from_texels(&settings, MapFormat::Depth24Unorm, &fit);
+        let ratio = by_settings.constant_depth / bias.constant_depth;
+        // They count with the longer side of a texel.
+        assert!((0.95..1.5).contains(&ratio), "{degrees}°: {ratio}");
+    }
+}
+
+#[test]
+fn maps_of_back_faces_need_a_bias_for_rounding_alone() {
+    let fit = fitted(&crate::support::camera(), sunlight(0.7), &exact(FitKind::FrustumAabb));
+    for storage in [DepthStorage::Unorm16, DepthStorage::Unorm24, DepthStorage::Float32] {
+        let bias = Bias::back_faces(storage, &fit);
+        assert_eq!(bias, Bias { constant_depth: depth_precision(&fit, storage), ..Bias::default() });
+    }
+    let by_settings = Bias::from_texels(&BiasSettings::back_faces(), MapFormat::Depth24Unorm, &fit);
+    let precision = depth_precision(&fit, DepthStorage::Unorm24);
+    assert!((by_settings.constant_depth / precision - 1.0).abs() < 1e-3, "{by_settings:?}");
+}
+
+#[test]
+fn a_disc_in_metres_has_the_same_width_in_every_map() {
+    for texels in [256, 2048] {
+        let settings = exact(FitKind::FrustumAabb).with_resolution(UVec2::new(texels, texels * 2));
+        let fit = fitted(&crate::support::camera(), sunlight(0.7), &settings);
+        let radius = FilterRadius::HARDWARE_2X2.over_disc_of_metres(0.3, &fit);
+        assert!((radius.disc * fit.texel_size - 0.3).abs().max_element() < 1e-6, "{radius:?}");
+        assert_eq!(radius.taps, FilterRadius::HARDWARE_2X2.taps);
     }
 }
 
@@ -271,6 +321,7 @@ proptest! {
                 for bias in [
                     Bias::automatic(filter.reach, storage, &case.fit).unwrap(),
                     Bias::automatic_receiver_plane(filter.reach, storage, &case.fit).unwrap(),
+                    Bias::automatic_constant(filter.reach, storage, &case.fit, case.normal).unwrap(),
                 ] {
                     let acne = case.acne_under(&bias, &filter, storage);
                     prop_assert!(acne <= 0.0, "{}, {storage:?}: {acne:e} with {bias:?}", filter.name);
@@ -299,6 +350,7 @@ proptest! {
                 for bias in [
                     Bias::automatic(filter.reach, storage, &case.fit).unwrap(),
                     Bias::automatic_receiver_plane(filter.reach, storage, &case.fit).unwrap(),
+                    Bias::automatic_constant(filter.reach, storage, &case.fit, case.normal).unwrap(),
                 ] {
                     let acne = triangle.acne(&bias, &filter, storage);
                     prop_assert!(acne <= 0.0, "{}, {storage:?}: {acne:e} with {bias:?}", filter.name);

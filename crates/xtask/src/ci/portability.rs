@@ -20,7 +20,17 @@ const BARE_TARGET: &str = "thumbv7em-none-eabi";
 const WASM_TARGET: &str = "wasm32-unknown-unknown";
 
 /// Features that must build without the standard library, each alone and all together.
-const FEATURES: [&str; 6] = ["", "alloc", "serde", "bytemuck", "mint", "alloc,serde,bytemuck,mint"];
+const FEATURES: [&str; 9] = [
+    "",
+    "alloc",
+    "serde",
+    "bytemuck",
+    "mint",
+    "cascades",
+    "windows",
+    "alloc,cascades,serde",
+    "alloc,serde,bytemuck,mint,cascades,windows",
+];
 
 /// The package that hashes fits.
 const DETERMINISM: &str = "shadowfit-determinism";
