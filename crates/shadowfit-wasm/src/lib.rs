@@ -4,13 +4,15 @@
 //! creates one for each sun and camera, and the garbage collector frees it. There are no handles, no
 //! generated JavaScript and no text: errors are numbers, and `npm/src/fitter.js` has their sentences.
 //!
-//! The caller writes numbers into [`memory`](exports), calls a function, and reads numbers. All numbers are
+//! The caller writes numbers into the memory, calls a function, and reads numbers. All numbers are
 //! `f64` except boxes and depths, which are `f32`.
 #![cfg_attr(target_arch = "wasm32", no_std)]
+#![cfg_attr(not(target_arch = "wasm32"), allow(dead_code, reason = "the exports exist only in the module"))]
 
 extern crate alloc;
 
 mod error;
+#[cfg(target_arch = "wasm32")]
 mod exports;
 mod fitter;
 mod input;

@@ -62,7 +62,7 @@ pub struct FitInput<'a> {
     /// Hierarchy of boxes that receive and cast shadows in addition to the two lists. The cost of a frame
     /// depends on the boxes nearby, not on the total number. Use it for thousands of static boxes. If it is
     /// set, a list that is `None` adds no boxes.
-    #[cfg(feature = "alloc")]
+    #[cfg(feature = "cache")]
     pub static_boxes: Option<&'a StaticBoxes>,
     /// Visible depths of the last frame, for
     /// [`SplitScheme::FromHistogram`](crate::settings::SplitScheme::FromHistogram).
@@ -85,7 +85,7 @@ impl<'a> FitInput<'a> {
             receivers: None,
             receiver_cones: &[],
             casters: None,
-            #[cfg(feature = "alloc")]
+            #[cfg(feature = "cache")]
             static_boxes: None,
             histogram: None,
             demand: &[],
@@ -105,13 +105,13 @@ impl<'a> FitInput<'a> {
         self.casters.is_some() || self.tree().is_some()
     }
 
-    #[cfg(feature = "alloc")]
+    #[cfg(feature = "cache")]
     fn tree(&self) -> Option<&'a StaticBoxes> {
         self.static_boxes
     }
 
-    #[cfg(not(feature = "alloc"))]
-    #[expect(clippy::unused_self, reason = "same signature as with an allocator")]
+    #[cfg(not(feature = "cache"))]
+    #[expect(clippy::unused_self, reason = "same signature as with the tree")]
     fn tree(&self) -> Option<&'a StaticBoxes> {
         None
     }

@@ -114,9 +114,9 @@
 //! | splits chosen from the visible depths of the last frame | [`demand`], [`FitInput::histogram`], [`FitInput::depth_bounds`] |
 //! | windows placed by the visible demand of the last frame | [`Windows`], [`demand`], [`ShadowFitter::set_visible_demand`], [`FitInput::demand`] |
 //! | the smallest useful number of maps | [`fewest_maps`] |
-//! | tight boxes around large meshes | [`Clusters`], feature `alloc`, and [`NormalCone`] |
-//! | thousands of static boxes, passed once | [`StaticBoxes`], [`FitInput::static_boxes`], feature `alloc` |
-//! | cached maps, with static casters drawn only into new parts: the passes of each frame as data, for any graphics API | [`cache`], feature `alloc` |
+//! | tight boxes around large meshes | [`Clusters`], feature `cache`, and [`NormalCone`] |
+//! | thousands of static boxes, passed once | [`StaticBoxes`], [`FitInput::static_boxes`], feature `cache` |
+//! | cached maps, with static casters drawn only into new parts: the passes of each frame as data, for any graphics API | [`cache`], feature `cache` |
 //! | the texels of a map that stay valid, for your own cache | [`scroll`] |
 //! | a moving sun without crawling shadow edges | [`light_steps`] |
 //! | a lamp or headlight: its perspective map, casters and biases | [`SpotLight`](spot::SpotLight), [`spot`] |
@@ -138,7 +138,7 @@
 //! - A light is given by its **direction of travel**. For a [`SpotLight`](spot::SpotLight) this is the
 //!   direction along its axis. If you have the direction toward the light, pass `-to_light`.
 //! - No function panics. Invalid input returns a [`FitError`] with the offending value. No function
-//!   allocates, except those behind the feature `alloc`. [`ShadowFitter`] and [`MapCache`](cache::MapCache)
+//!   allocates, except those behind the features `alloc` and `cache`. [`ShadowFitter`] and [`MapCache`](cache::MapCache)
 //!   allocate while their scene grows, but not in steady frames.
 //! - Transcendental functions come from `libm`, and all other arithmetic is `+ - × ÷ √` on scalars. The same
 //!   input gives the same bits on every target.
@@ -148,9 +148,10 @@
 //! | feature | adds |
 //! |---|---|
 //! | `std` (default) | `alloc`, and glam with the standard library |
+//! | `cache` (default) | [`cache`], [`StaticBoxes`] and [`Clusters`]; needs `alloc` |
 //! | `cascades` (default) | techniques with [`Cascades`] and [`SingleMap`]; without it their fits fail with [`FitError::MissingFeature`] |
 //! | `windows` (default) | techniques with [`Windows`], such as [`Technique::default`]; without it their fits fail in the same way |
-//! | `alloc` | [`ShadowFitter`], [`VisibleDemand`], [`StaticBoxes`], `Clusters` and [`cache`]; needs an allocator but not the standard library |
+//! | `alloc` | [`ShadowFitter`] and [`VisibleDemand`]; needs an allocator but not the standard library |
 //! | `serde` | `Serialize` and `Deserialize` for all settings, for inputs and outputs that own their data, and for the state between frames; to store `Clusters`, store their [`Aabb`]s and [`NormalCone`]s |
 //! | `bytemuck` | `Pod` and `Zeroable` for [`Aabb`], [`Sphere`](culling::Sphere), [`OrientedBox`](culling::OrientedBox), [`NormalCone`], [`Bias`], [`SpotBias`](spot::SpotBias) and [`CasterPlanes`](culling::CasterPlanes) |
 //! | `mint` | the module `mint`: conversions from and to the types of other maths crates |
@@ -262,7 +263,7 @@ pub mod selection;
 mod map;
 
 /// Changes of [`StaticBoxes`] between frames.
-#[cfg(feature = "alloc")]
+#[cfg(feature = "cache")]
 pub mod static_boxes {
     pub use crate::content::tree::{BoxChange, BoxRevision};
 }
@@ -274,7 +275,7 @@ mod keep {
     pub(crate) mod texels;
 }
 
-#[cfg(feature = "alloc")]
+#[cfg(feature = "cache")]
 pub mod cache;
 pub mod diagnostics;
 pub mod proof;
@@ -289,10 +290,10 @@ pub mod mint;
 
 pub use base::{Aabb, Boxes, DepthConvention, FitError};
 pub use bias::Bias;
-#[cfg(feature = "alloc")]
+#[cfg(feature = "cache")]
 pub use content::clusters::Clusters;
 pub use content::normal_cone::NormalCone;
-#[cfg(feature = "alloc")]
+#[cfg(feature = "cache")]
 pub use content::tree::StaticBoxes;
 pub use culling::CasterVolume;
 #[cfg(feature = "alloc")]

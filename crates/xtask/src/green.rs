@@ -34,6 +34,8 @@ pub(crate) enum Suite {
     Page,
     /// Lints, docs and tests of the package for Bevy.
     Bevy,
+    /// Tests of the npm package for three.js in a browser.
+    Npm,
 }
 
 impl Suite {
@@ -41,6 +43,7 @@ impl Suite {
         match self {
             Self::Page => "tests of the page",
             Self::Bevy => "lints and tests of bevy-shadowfit",
+            Self::Npm => "tests of the npm package",
         }
     }
 
@@ -49,6 +52,7 @@ impl Suite {
         match self {
             Self::Page => "shadowfit-viewer",
             Self::Bevy => "bevy-shadowfit",
+            Self::Npm => "shadowfit-wasm",
         }
     }
 }
@@ -144,7 +148,7 @@ fn tools(suite: Suite) -> Result<Vec<String>> {
     let version = |program: &str| process::output_of(Command::new(program).arg("--version"));
     let compiler = version("rustc").context("rustc does not start")?;
     Ok(match suite {
-        Suite::Page => {
+        Suite::Page | Suite::Npm => {
             let browsers = BROWSERS.iter().filter_map(|name| version(name));
             std::iter::once(compiler).chain(version("node")).chain(browsers).collect()
         }

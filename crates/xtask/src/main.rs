@@ -18,6 +18,8 @@ mod green;
 mod machine;
 #[cfg(feature = "tools")]
 mod maths;
+#[cfg(feature = "tools")]
+mod npm;
 mod process;
 mod run;
 mod rustdoc;
@@ -110,6 +112,18 @@ enum Task {
         #[arg(long, requires = "test")]
         long: bool,
     },
+    /// Build the npm package for three.js into out/npm.
+    Npm {
+        /// Tests it in headless Chromium, in a fresh project with a bundler and in a page without one.
+        #[arg(long)]
+        test: bool,
+        /// Measures three.js's own pictures with it and with three.js's own shadows, judged by rays.
+        #[arg(long, conflicts_with = "test")]
+        figures: bool,
+        /// Measures a few frames only.
+        #[arg(long, requires = "figures")]
+        quick: bool,
+    },
     /// Rewrite the golden images of the tests; look at the diff before committing it.
     Golden,
 }
@@ -138,8 +152,14 @@ fn main() -> ExitCode {
         Task::Web { test: true, long, .. } => green::unless_unchanged(green::Suite::Page, || web::test(long)),
         #[cfg(feature = "tools")]
         Task::Web { build, port, .. } => web::web(build.as_deref(), port),
+        #[cfg(feature = "tools")]
+        Task::Npm { test: true, .. } => green::unless_unchanged(green::Suite::Npm, npm::test),
+        #[cfg(feature = "tools")]
+        Task::Npm { figures: true, quick, .. } => npm::figures(quick),
+        #[cfg(feature = "tools")]
+        Task::Npm { .. } => npm::pack().map(|_| ()),
         #[cfg(not(feature = "tools"))]
-        Task::Bundle { .. } | Task::Generate | Task::Gallery { .. } | Task::Web { .. } => {
+        Task::Npm { .. } | Task::Bundle { .. } | Task::Generate | Task::Gallery { .. } | Task::Web { .. } => {
             process::run(process::with_tools().args(std::env::args_os().skip(1)))
         }
     };

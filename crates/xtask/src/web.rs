@@ -15,7 +15,7 @@ use crate::process::{self, has_target, target_folder};
 mod browser;
 mod serve;
 
-pub(crate) use browser::test;
+pub(crate) use browser::{browser, test};
 
 /// The modules: a folder, and the viewer's feature for the build.
 const MODULES: [(&str, &str); 2] = [("webgpu", "webgpu"), ("webgl2", "webgl")];

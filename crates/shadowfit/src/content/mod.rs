@@ -5,13 +5,13 @@
 //! receive the boxes of the lists and of the tree.
 
 mod boxes;
-#[cfg(feature = "alloc")]
+#[cfg(feature = "cache")]
 pub(crate) mod clusters;
 mod extents;
 mod groups;
 pub(crate) mod normal_cone;
 mod static_boxes;
-#[cfg(feature = "alloc")]
+#[cfg(feature = "cache")]
 pub(crate) mod tree;
 mod views;
 mod visit;

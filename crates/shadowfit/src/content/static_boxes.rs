@@ -1,20 +1,20 @@
-//! The tree of static boxes, which needs an allocator. Without one, an empty type takes its place.
+//! The tree of static boxes. In builds without it, an empty type takes its place.
 
-#[cfg(not(feature = "alloc"))]
+#[cfg(not(feature = "cache"))]
 use glam::DVec3;
 
-#[cfg(not(feature = "alloc"))]
+#[cfg(not(feature = "cache"))]
 use crate::base::Aabb;
 
-#[cfg(feature = "alloc")]
+#[cfg(feature = "cache")]
 pub(crate) use super::tree::StaticBoxes;
 
-/// A type without values, because trees need an allocator.
-#[cfg(not(feature = "alloc"))]
+/// A type without values, for builds without the tree.
+#[cfg(not(feature = "cache"))]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum StaticBoxes {}
 
-#[cfg(not(feature = "alloc"))]
+#[cfg(not(feature = "cache"))]
 impl StaticBoxes {
     pub(crate) fn origin(&self) -> DVec3 {
         match *self {}

@@ -8,7 +8,7 @@ mod batch;
 mod readers;
 mod shapes;
 mod sweep;
-#[cfg(feature = "alloc")]
+#[cfg(feature = "cache")]
 mod tree;
 mod volume;
 

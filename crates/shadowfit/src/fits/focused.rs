@@ -3,7 +3,7 @@
 //! Most of a frustum is empty air. Each receiver's box is clipped to the frustum and projected along the
 //! light. The rectangle encloses the outlines of all boxes, and depth ends at the lowest one. No pixel of a
 //! receiver lies outside its box, so none is missed. Tighter boxes give finer texels, so it pays to cut a
-//! large mesh into clusters (`Clusters`, with the feature `alloc`).
+//! large mesh into clusters (`Clusters`, with the feature `cache`).
 
 use super::{Covers, Form};
 

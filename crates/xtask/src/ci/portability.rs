@@ -20,7 +20,7 @@ const BARE_TARGET: &str = "thumbv7em-none-eabi";
 const WASM_TARGET: &str = "wasm32-unknown-unknown";
 
 /// Features that must build without the standard library, each alone and all together.
-const FEATURES: [&str; 9] = [
+const FEATURES: [&str; 10] = [
     "",
     "alloc",
     "serde",
@@ -28,8 +28,9 @@ const FEATURES: [&str; 9] = [
     "mint",
     "cascades",
     "windows",
+    "cache",
     "alloc,cascades,serde",
-    "alloc,serde,bytemuck,mint,cascades,windows",
+    "cache,serde,bytemuck,mint,cascades,windows",
 ];
 
 /// The package that hashes fits.

@@ -85,7 +85,7 @@ fn serve_beside(folder: std::path::PathBuf) -> String {
 }
 
 /// Returns the path of the installed browser.
-fn browser() -> Result<String> {
+pub(crate) fn browser() -> Result<String> {
     let path = std::env::var_os("PATH").unwrap_or_default();
     let found = std::env::split_paths(&path)
         .flat_map(|folder| BROWSERS.map(|name| folder.join(name)))
