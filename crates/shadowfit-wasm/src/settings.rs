@@ -85,9 +85,9 @@ impl Settings {
 
 /// Returns a filter of the core with at least this radius.
 fn filter(taps: f32, disc: f32) -> (FilterKind, Softness) {
-    let hard = [FilterKind::Point, FilterKind::Hardware2x2, FilterKind::Pcf3x3, FilterKind::Pcf5x5, FilterKind::Pcf7x7];
     let radius = taps + disc;
-    if let Some(kind) = hard.into_iter().find(|kind| kind.filter_radius() >= radius) {
+    let mut hard = FilterKind::ALL.into_iter().filter(|kind| !kind.is_soft());
+    if let Some(kind) = hard.find(|kind| kind.filter_radius() >= radius) {
         return (kind, Softness::default());
     }
     // A soft filter whose disc has the same number of texels in every map.

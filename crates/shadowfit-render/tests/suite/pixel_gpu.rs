@@ -84,7 +84,8 @@ fn assert_depths(pictures: &mut Pictures, seen: &Seen, format: MapFormat) {
 
 #[test]
 fn texels_around_a_pixel_are_those_of_the_map_in_every_format() {
-    for format in MapFormat::ALL {
+    // WebGPU cannot copy 24-bit depths to a buffer.
+    for format in MapFormat::ALL.into_iter().filter(|format| *format != MapFormat::Depth24Unorm) {
         let Stage { mut pictures, seen } = Stage::new(&technique(format), 1);
         pictures.probe(&seen.frame());
         assert_depths(&mut pictures, &seen, format);

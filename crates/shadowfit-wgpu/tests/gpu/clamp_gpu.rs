@@ -29,7 +29,7 @@ fn casters(fit: &LightProjection) -> Vec<Vec3> {
 #[test]
 fn clamped_maps_are_the_same_texel_for_texel_in_every_format_and_depth() {
     let devices = [Engine::shared(), Engine::without_clamp()];
-    for (format, step) in MapFormat::ALL.into_iter().zip([1e-6, 1.6e-5, 1e-6, 5e-4, 1e-6, 4e-3]) {
+    for (format, step) in MapFormat::ALL.into_iter().zip([1e-6, 1e-6, 1.6e-5, 1e-6, 5e-4, 1e-6, 4e-3]) {
         for depth in [DepthConvention::ZeroToOne, DepthConvention::Reversed] {
             let (map, fit) = (descriptor(format, depth), box_fit(depth));
             let view = MapView::from_eye(DVec3::ZERO, Vec3::NEG_Z);
