@@ -1,0 +1,2 @@
+export { FitError, SunFitter } from './fitter.js';
+export type * from './fitter.js';
