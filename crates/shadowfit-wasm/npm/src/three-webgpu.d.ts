@@ -66,7 +66,7 @@ export class ShadowfitShadow extends LightShadow<OrthographicCamera> {
   distance: number;
   /** Width and height of a map, in texels. */
   mapSize: Vector2;
-  /** Softness of the edges. Up to 1, a tent of 5 × 5 texels; above, a disc of two texels per unit. Default: 1. */
+  /** Softness of the edges. Up to 1, a tent of 3 × 3 comparisons; above, a disc of this radius, in texels. Default: 1. */
   radius: number;
   /** Darkness of the shadows, 0 to 1. Default: 1. */
   intensity: number;

@@ -12,7 +12,7 @@ export interface ShadowfitOptions {
   /** View depth at which shadows end. Shadows fade out over its last tenth. Default: `Infinity`, the camera's far plane. */
   distance?: number;
   /** Look-up of the maps in the shaders.
-   * - `coverage`: each point reads the finest map that covers it, with a filter of 5 × 5 texels and a bias from the
+   * - `coverage`: each point reads the finest map that covers it, with a filter of 3 × 3 comparisons and a bias from the
    *   receiver's plane. It changes the text of one shader chunk of three.js.
    * - `stock`: two cascades by view depth, read by three.js's own shader.
    * Default: `coverage`. */
@@ -80,7 +80,7 @@ export class ShadowfitShadow extends LightShadow<OrthographicCamera> {
   distance: number;
   /** Width and height of a map, in texels. Sizes that the device cannot hold are reduced. */
   mapSize: Vector2;
-  /** Softness of the edges. Up to 1, a tent of 5 × 5 texels; above, a disc of two texels per unit. Default: 1. */
+  /** Softness of the edges. Up to 1, a tent of 3 × 3 comparisons; above, a disc of this radius, in texels. Default: 1. */
   radius: number;
   /** Darkness of the shadows, 0 to 1. Default: 1. */
   intensity: number;

@@ -4,6 +4,9 @@ import * as THREE from 'three';
 import { cameraInViewSpaceOf, moveCamera } from './camera.js';
 import { PassCounter } from './passes.js';
 
+/** Time between frames at 60 frames per second, in milliseconds. */
+const FRAME_TIME = 16;
+
 /**
  * Biases of a contestant. Absent ones keep three.js's defaults.
  *
@@ -89,6 +92,11 @@ export class Entry {
    */
   drawWithLastMaps(frame) {
     return this.stage.draw(cameraInViewSpaceOf(frame, this.last), false);
+  }
+
+  /** Waits as long as an application between frames. Results that a fit reads from the GPU arrive in this time. */
+  rest() {
+    return new Promise((done) => { setTimeout(done, FRAME_TIME); });
   }
 
   /** Draws and returns the picture of the last frame without shadows, which must show the brightness of a plain sun. */

@@ -9,7 +9,7 @@ import { TruthTracer } from './truth.js';
 /** Width and height of pictures, in pixels. */
 const SIZE = [960, 540];
 /** Frames of the path that are drawn before the picture, so that fits with a memory have one. */
-const LEAD = 4;
+const LEAD = 8;
 const SKY = 0xa9c6e8;
 const GROUND = 0x8a8273;
 /** Intensity of the sky. The sun has π. */
@@ -111,7 +111,10 @@ async function bothPictures({ scene, frames, contestant, biases, truth }) {
 
 async function drawAll(entry, frames, then) {
   await entry.beginPath(frames[0]);
-  frames.forEach((frame) => entry.draw(frame));
+  for (const frame of frames) {
+    await entry.rest();
+    entry.draw(frame);
+  }
   then();
   entry.dispose();
   entry.stage.dispose();

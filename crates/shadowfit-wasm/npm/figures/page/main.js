@@ -73,7 +73,6 @@ window.figures = {
   /** Measures variants of a contestant. See `measure`. */
   measure: (name, variants) => measure({ ...open, contestant: contestantOf(name), variants }),
 
-  debug: () => open,
   /** Tunes a contestant. See `tune`. */
   tune: (name) => tune({ ...open, contestant: contestantOf(name) }),
 

@@ -44,7 +44,7 @@ async function measurePath(entry, path, truths, drawsAll) {
       entry.draw(frame);
       entry.stage.read();
     }
-    await nextTask();
+    await entry.rest();
   }
   const last = path.findLast((frame) => truths.has(frame.id));
   if (last) {
@@ -54,11 +54,6 @@ async function measurePath(entry, path, truths, drawsAll) {
     checkBrightness(truths.get(last.id), entry.drawUnshadowed());
   }
   return sums;
-}
-
-/** Waits for the next task, as between frames of an application: results of the GPU only arrive between tasks. */
-function nextTask() {
-  return new Promise((done) => { setTimeout(done); });
 }
 
 function measureFrame(entry, frame, truth) {

@@ -9,8 +9,7 @@ export const TRIANGLE = 'triangle';
 /** Meshes of a scene, and their triangles in world space. */
 export class MeasuredScene {
   /**
-   * Takes over the meshes below an object. All receive shadows. Geometries become non-indexed, so that each triangle has
-   * a number.
+   * Takes over the meshes below an object. All receive shadows.
    *
    * @param {string} name
    * @param {import('three').Object3D} root
@@ -23,18 +22,24 @@ export class MeasuredScene {
     /** @type {import('three').Mesh[]} */
     this.meshes = [];
     root.traverse((object) => object.isMesh && this.meshes.push(object));
+    for (const mesh of this.meshes) {
+      mesh.receiveShadow = true;
+      mesh.matrixAutoUpdate = false;
+      if (!mesh.geometry.hasAttribute('normal')) {
+        mesh.geometry.computeVertexNormals();
+      }
+    }
     /** Materials of the meshes as loaded. */
     this.materials = this.meshes.map((mesh) => mesh.material);
-    const lists = this.meshes.map(numberTriangles());
+    /** Geometries of the meshes as loaded, and the same triangles with numbers. */
+    this.geometries = this.meshes.map((mesh) => mesh.geometry);
+    this.numbered = numberedGeometries(this.geometries);
+    const lists = this.meshes.map((mesh, index) => worldCorners(mesh, this.numbered[index]));
     /** World-space corners, nine numbers per triangle. */
     this.corners = concatenate(lists);
     /** World-space corners of the triangles that cast shadows. */
     this.castingCorners = concatenate(lists.filter((_, index) => this.meshes[index].castShadow));
     this.box = new Box3().setFromArray(this.corners);
-    for (const mesh of this.meshes) {
-      mesh.receiveShadow = true;
-      mesh.matrixAutoUpdate = false;
-    }
   }
 
   /**
@@ -61,32 +66,42 @@ export class MeasuredScene {
     });
   }
 
+  /**
+   * Calls a function while the meshes have geometries with the attribute `TRIANGLE`.
+   *
+   * @param {() => void} draw
+   */
+  withNumbers(draw) {
+    this.meshes.forEach((mesh, index) => { mesh.geometry = this.numbered[index]; });
+    draw();
+    this.meshes.forEach((mesh, index) => { mesh.geometry = this.geometries[index]; });
+  }
+
   /** Number of triangles. */
   get triangles() {
     return this.corners.length / 9;
   }
 }
 
-/** Returns a function that numbers the triangles of meshes one after another, and returns their world-space corners. */
-function numberTriangles() {
+/** Returns non-indexed copies of geometries, whose triangles are numbered one after another. */
+function numberedGeometries(geometries) {
   let next = 0;
-  return (mesh) => {
-    mesh.geometry = mesh.geometry.index ? mesh.geometry.toNonIndexed() : mesh.geometry.clone();
-    if (!mesh.geometry.hasAttribute('normal')) {
-      mesh.geometry.computeVertexNormals();
-    }
-    const { position } = mesh.geometry.attributes;
-    const corners = new Float32Array(position.count * 3);
-    const numbers = new Float32Array(position.count);
-    const corner = new Vector3();
-    for (let index = 0; index < position.count; index += 1) {
-      corner.fromBufferAttribute(position, index).applyMatrix4(mesh.matrixWorld).toArray(corners, 3 * index);
-      numbers[index] = next + Math.floor(index / 3);
-    }
-    next += position.count / 3;
-    mesh.geometry.setAttribute(TRIANGLE, new BufferAttribute(numbers, 1));
-    return corners;
-  };
+  return geometries.map((geometry) => {
+    const copy = geometry.index ? geometry.toNonIndexed() : geometry.clone();
+    const { count } = copy.attributes.position;
+    const numbers = Float32Array.from({ length: count }, (_, corner) => next + Math.floor(corner / 3));
+    next += count / 3;
+    return copy.setAttribute(TRIANGLE, new BufferAttribute(numbers, 1));
+  });
+}
+
+function worldCorners(mesh, { attributes: { position } }) {
+  const corners = new Float32Array(position.count * 3);
+  const corner = new Vector3();
+  for (let index = 0; index < position.count; index += 1) {
+    corner.fromBufferAttribute(position, index).applyMatrix4(mesh.matrixWorld).toArray(corners, 3 * index);
+  }
+  return corners;
 }
 
 function concatenate(lists) {

@@ -1,7 +1,7 @@
 // A renderer that draws a scene into a float picture, as stock three.js shows it: no tone mapping, no ambient light.
 
 import {
-  BackSide, DoubleSide, FloatType, FrontSide, MeshLambertMaterial, NearestFilter, NoToneMapping, PCFShadowMap,
+  BackSide, DepthTexture, DoubleSide, FloatType, FrontSide, MeshLambertMaterial, NearestFilter, NoToneMapping, PCFShadowMap,
   RedFormat, WebGLRenderer, WebGLRenderTarget,
 } from 'three';
 import { bySide } from './scene.js';
@@ -23,7 +23,9 @@ export class Stage {
     this.renderer.shadowMap.enabled = true;
     this.renderer.shadowMap.type = PCFShadowMap;
     const filter = { minFilter: NearestFilter, magFilter: NearestFilter };
-    this.target = new WebGLRenderTarget(width, height, { type: FloatType, format: RedFormat, ...filter });
+    // The depth texture makes the picture's depths readable, like the depths of a canvas.
+    const depthTexture = new DepthTexture(width, height);
+    this.target = new WebGLRenderTarget(width, height, { type: FloatType, format: RedFormat, depthTexture, ...filter });
     /** Materials that meshes were given. They are kept to the end, so that later ones find their compiled shaders. */
     this.materials = [];
   }

@@ -92,7 +92,7 @@ export class TruthTracer {
   /** Returns the number of the visible triangle at each pixel, or -1. */
   #triangles(camera) {
     this.scene.dress(this.numbers);
-    this.stage.draw(camera, false);
+    this.scene.withNumbers(() => this.stage.draw(camera, false));
     return this.stage.read().map((number) => number - 1);
   }
 

@@ -15,6 +15,7 @@ import {
 } from 'three';
 
 import { Atlas } from './atlas.js';
+import { AllFaces } from './faces.js';
 import { SceneHook } from './hook.js';
 import { KEEP, REDRAW, WIDEN, compare, drawnNow } from './kept.js';
 import { installLookUp, packWindows } from './lookup.js';
@@ -82,6 +83,7 @@ export class ShadowfitShadow extends LightShadow {
     /** Whether WebGLShadowMap must not draw the maps in this frame. */
     this._isSkipped = false;
     this._isInPass = false;
+    this._faces = new AllFaces();
     /** Whether the light is no sun. */
     this._isRefused = false;
     /** Result of the comparison with the drawn maps. */
@@ -109,6 +111,9 @@ export class ShadowfitShadow extends LightShadow {
   set needsUpdate(value) {
     this._needsUpdate = value;
     this._isInPass &&= value;
+    if (!value) {
+      this._faces?.end();
+    }
   }
 
   /** Size of a map, in texels. A size that no texture can have is 1, until the sun is known and a warning can name it. */
@@ -155,6 +160,7 @@ export class ShadowfitShadow extends LightShadow {
 
   /** Begins a frame. */
   _begin() {
+    this._faces.end();
     this._isSkipped = false;
     this._isInPass = false;
     this._prepared = undefined;
@@ -203,12 +209,16 @@ export class ShadowfitShadow extends LightShadow {
     }
     const { fit, scan } = this._prepared;
     this._commit(fit, scan);
+    if (this._look !== VSM) {
+      this._faces.begin(scan);
+    }
     this._prepared = undefined;
     this._answer = undefined;
   }
 
   /** Ends a frame. */
   _end(renderer, camera) {
+    this._faces.end();
     this._isSkipped = false;
     this._isInPass = false;
     if (this._frame.camera === camera) {
@@ -371,8 +381,10 @@ export class ShadowfitShadow extends LightShadow {
     const masks = isLasting ? fit.keptCasters : fit.casters;
     atlas.cull(scan, masks, fit.bits);
     if (this._isCovering) {
+      // At the camera's far plane, there is nothing to fade into.
+      const end = this.distance < (this._frame.camera?.far ?? Infinity) ? this.distance : Infinity;
       packWindows({ matrices: this._matrices, vectors: this._cascadeData }, atlas,
-        { origin: fit.origin, blend: BLEND, end: this.distance });
+        { origin: fit.origin, blend: BLEND, end });
     } else {
       this._writeCascades(fit.maps);
     }

@@ -90,32 +90,22 @@ const GLSL = /* glsl */`
 
 		#if defined( SHADOWMAP_TYPE_PCF )
 
-			float shadowfitRow( SHADOWFIT_MAP shadowMap, ShadowfitPoint point, vec3 columns, vec3 weights, float row ) {
-
-				return weights.x * shadowfitCompare( shadowMap, point, vec2( columns.x, row ) )
-					+ weights.y * shadowfitCompare( shadowMap, point, vec2( columns.y, row ) )
-					+ weights.z * shadowfitCompare( shadowMap, point, vec2( columns.z, row ) );
-
-			}
-
-			// Tent of 5 x 5 bilinear comparisons with the weights 1 2 3 2 1 along each axis, one texel apart. Along an
-			// axis they weight six texels by 1-t, 2-t, 3-t, 2+t, 1+t and t, over 9. Three comparisons between the pairs
-			// of these texels give the same sum.
+			// Tent of 3 x 3 bilinear comparisons with the weights 1 2 1 along each axis, one texel apart. Along an axis they
+			// weight four texels by 1-t, 2-t, 1+t and t, over 4. Two comparisons between the pairs of these texels give the
+			// same sum. It reaches as far as three.js's own filter.
 			float shadowfitTent( SHADOWFIT_MAP shadowMap, ShadowfitPoint point ) {
 
 				vec2 centre = floor( point.texel - 0.5 ) + 0.5;
 				vec2 t = point.texel - centre;
 				vec2 w0 = 3.0 - 2.0 * t;
-				vec2 w2 = 1.0 + 2.0 * t;
-				vec2 p0 = centre - 2.0 + ( 2.0 - t ) / w0;
-				vec2 p1 = centre + ( 2.0 + t ) / 5.0;
-				vec2 p2 = centre + 2.0 + t / w2;
-				vec3 columns = vec3( p0.x, p1.x, p2.x );
-				vec3 weights = vec3( w0.x, 5.0, w2.x );
+				vec2 w1 = 1.0 + 2.0 * t;
+				vec2 p0 = centre - 1.0 + ( 2.0 - t ) / w0;
+				vec2 p1 = centre + 1.0 + t / w1;
 
-				return ( w0.y * shadowfitRow( shadowMap, point, columns, weights, p0.y )
-					+ 5.0 * shadowfitRow( shadowMap, point, columns, weights, p1.y )
-					+ w2.y * shadowfitRow( shadowMap, point, columns, weights, p2.y ) ) / 81.0;
+				return ( w0.x * w0.y * shadowfitCompare( shadowMap, point, p0 )
+					+ w1.x * w0.y * shadowfitCompare( shadowMap, point, vec2( p1.x, p0.y ) )
+					+ w0.x * w1.y * shadowfitCompare( shadowMap, point, vec2( p0.x, p1.y ) )
+					+ w1.x * w1.y * shadowfitCompare( shadowMap, point, p1 ) ) / 16.0;
 
 			}
 

@@ -5,9 +5,9 @@ import { warnOnce } from './warn.js';
 /** Greatest number of windows. The uniforms of a sun have no room for more. */
 export const MAX_WINDOWS = 4;
 
-/** Radius of the disc in texels, per unit of `radius`. With this factor, the disc of a radius just above 1 blurs about as
- * much as the tent. */
-export const DISC_PER_RADIUS = 2;
+/** Radius of the disc in texels, per unit of `radius`: that of three.js's own filter. The disc of a radius of 1 reaches as
+ * far as the tent. */
+export const DISC_PER_RADIUS = 1;
 
 /** Width of the blend into the next window, in texels. */
 export const BLEND = 8;

@@ -17,12 +17,12 @@ export const MAX_MAPS = 8;
 /** Width of the blend into the next map, in texels. */
 export const BLEND = 8;
 
-/** Half width of the tent filter, in texels: look-ups up to 2 texels away, each with a bilinear comparison. */
-export const TENT = 3;
+/** Half width of the tent filter, in texels: look-ups one texel away, each with a bilinear comparison. */
+export const TENT = 2;
 
-/** Radius of the disc in texels, per unit of `shadow.radius`. With this factor, the disc of a radius just above 1 blurs
- * about as much as the tent. */
-export const DISC_PER_RADIUS = 2;
+/** Radius of the disc in texels, per unit of `shadow.radius`: that of three.js's own filter. The disc of a radius of 1
+ * reaches as far as the tent. */
+export const DISC_PER_RADIUS = 1;
 
 /** Look-ups of the disc. Fewer show the noise of the rotation, more cost time. */
 const DISC_LOOK_UPS = 16;
@@ -224,9 +224,9 @@ function filter(point, radius) {
 }
 
 /**
- * Averages 5 × 5 bilinear comparisons, one texel apart, with the weights 1 2 3 2 1 along each axis. Bilinear comparisons
- * weight two texels by 1-t and t. So together, along an axis, six texels have the weights 1-t, 2-t, 3-t, 2+t, 1+t and t,
- * over 9. Three comparisons between the pairs of these texels give the same sum.
+ * Averages 3 × 3 bilinear comparisons, one texel apart, with the weights 1 2 1 along each axis. Bilinear comparisons weight
+ * two texels by 1-t and t. So together, along an axis, four texels have the weights 1-t, 2-t, 1+t and t, over 4. Two
+ * comparisons between the pairs of these texels give the same sum.
  */
 function tent(point) {
   const { texel } = point;
@@ -234,15 +234,15 @@ function tent(point) {
   const t = texel.sub(centre).toVar();
   const before = t.mul(-2).add(3).toVar();
   const after = t.mul(2).add(1).toVar();
-  const offsets = [t.oneMinus().add(1).div(before).sub(2), t.add(2).div(5), t.div(after).add(2)];
-  const weights = [before, vec2(5), after];
+  const offsets = [t.oneMinus().add(1).div(before).sub(1), t.div(after).add(1)];
+  const weights = [before, after];
   const columns = offsets.map((offset) => centre.x.add(offset.x).toVar());
   const rows = offsets.map((offset) => centre.y.add(offset.y).toVar());
   const lines = rows.map((row, j) => {
-    const [a, b, c] = columns.map((column, i) => compare(point, vec2(column, row)).mul(weights[i].x));
-    return a.add(b).add(c).mul(weights[j].y);
+    const [a, b] = columns.map((column, i) => compare(point, vec2(column, row)).mul(weights[i].x));
+    return a.add(b).mul(weights[j].y);
   });
-  return lines[0].add(lines[1]).add(lines[2]).div(81);
+  return lines[0].add(lines[1]).div(16);
 }
 
 /** Averages comparisons over a disc that is rotated per pixel. */

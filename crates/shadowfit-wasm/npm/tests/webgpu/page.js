@@ -444,7 +444,7 @@ const TESTS = {
       const moved = [SHADOW[0] - 1, 0];
       const shadows = [];
       const passes = [];
-      for (let i = 0; i < 5; i += 1) {
+      for (let i = 0; i < 8; i += 1) {
         shadows.push((await stage.shades([SHADOW]))[0]);
         passes.push(stage.sun.shadow.report().passes);
         shadows.push((await stage.shades([moved], second))[0]);
