@@ -92,6 +92,12 @@ extern "C" fn count_depths(width: u32) -> u32 {
     })
 }
 
+/// Forgets the counted surfaces.
+#[unsafe(no_mangle)]
+extern "C" fn forget_depths() {
+    with(Fitter::forget_depths);
+}
+
 /// Forgets all earlier frames.
 #[unsafe(no_mangle)]
 extern "C" fn reset() {

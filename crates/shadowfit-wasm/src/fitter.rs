@@ -86,6 +86,11 @@ impl Fitter {
         self.fitter.reset();
     }
 
+    /// Forgets the counted surfaces.
+    pub(crate) fn forget_depths(&mut self) {
+        self.fitter.forget_visible_demand();
+    }
+
     /// Fits the maps of the frame in the memory. Returns their number.
     pub(crate) fn fit(&mut self) -> Result<usize, FitError> {
         let settings = self.settings.as_ref().ok_or(FitError::NoView)?;

@@ -51,6 +51,11 @@ impl ShadowFitter {
         self.visible = Some(visible);
     }
 
+    /// Forgets the visible demand. Later fits estimate it from the boxes.
+    pub fn forget_visible_demand(&mut self) {
+        self.visible = None;
+    }
+
     /// Returns the visible demand that was set last.
     pub fn visible_demand(&self) -> Option<&VisibleDemand> {
         self.visible.as_ref()
@@ -164,6 +169,10 @@ mod tests {
         assert!(holds(&by_grid) && !holds(&by_boxes), "the finest map covers the counted points");
         fitter.reset();
         assert_eq!(*fitter.fit(&input).expect("maps"), by_boxes);
+
+        fitter.set_visible_demand(visible.clone());
+        fitter.forget_visible_demand();
+        assert_eq!(fitter.fit(&input).expect("maps").placement, PlacementSource::Boxes);
 
         // Demand of another light is ignored, and `placement` reports it.
         fitter.set_visible_demand(visible);

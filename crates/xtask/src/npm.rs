@@ -42,9 +42,8 @@ pub(crate) fn pack() -> Result<PathBuf> {
 pub(crate) fn test() -> Result<()> {
     let package = pack()?;
     let folder = work_folder();
-    process::run(Command::new("npx").args(["tsc", "--project", "tests/types"]).current_dir(&folder))?;
     let mut node = Command::new("node");
-    node.args(["--test", "--test-reporter=spec", "--test-concurrency=1", "tests/"]).current_dir(&folder);
+    node.args(["--test", "--test-reporter=spec", "--test-concurrency=1", "--test-force-exit", "tests/"]).current_dir(&folder);
     process::run(node.env("BROWSER", web::browser()?).env("PACKAGE", package))
 }
 
@@ -64,7 +63,7 @@ pub(crate) fn figures(is_quick: bool) -> Result<()> {
     if is_quick {
         node.arg("--quick");
     }
-    process::run(node.env("BROWSER", web::browser()?).env("NODE_MODULES", folder.join("node_modules")))
+    process::run(node.env("BROWSER", web::browser()?).env("PACKAGES", &folder))
 }
 
 /// Builds the package in the target folder. Returns its folder.

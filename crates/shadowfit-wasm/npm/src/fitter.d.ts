@@ -106,6 +106,8 @@ export class SunFitter {
   /** Counts the surfaces that a depth buffer shows. Later fits place the maps by them, until they are counted anew.
    * `depths` are rows from the **top**, as stored (0..1). `view` is the view that they were drawn with. */
   countDepths(depths: Float32Array, width: number, view: FitterView, direction: Vec3): void;
+  /** Forgets the counted surfaces. Later fits estimate the visible surfaces from the boxes. */
+  forgetDepths(): void;
   /** Forgets all earlier frames, after a camera cut. */
   reset(): void;
 }

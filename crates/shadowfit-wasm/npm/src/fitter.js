@@ -140,6 +140,10 @@ export function fitterClass(bytes, kind) {
       this.#wasm.reset();
     }
 
+    forgetDepths() {
+      this.#wasm.forget_depths();
+    }
+
     #writeFrame(views, direction) {
       if (views.length > MAX_VIEWS) throw new FitError(2, `there are ${views.length} views; give at most ${MAX_VIEWS}`);
       const input = this.#doubles(this.#wasm.input(), 4 + MAX_VIEWS * VIEW);

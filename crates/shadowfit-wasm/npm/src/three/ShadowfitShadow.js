@@ -14,6 +14,8 @@ import {
   BasicShadowMap, LightShadow, Matrix4, OrthographicCamera, REVISION, RGFormat, VSMShadowMap, Vector2, Vector4,
 } from 'three';
 
+import { SunFitter as CascadesFitter } from '../cascades.js';
+import { SunFitter as WindowsFitter } from '../windows.js';
 import { Atlas } from './atlas.js';
 import { AllFaces } from './faces.js';
 import { SceneHook } from './hook.js';
@@ -343,8 +345,11 @@ export class ShadowfitShadow extends LightShadow {
     }
     let cameraFit = this._fits.get(camera);
     if (cameraFit === undefined) {
-      cameraFit = new CameraFit();
+      cameraFit = new CameraFit({ windows: WindowsFitter, cascades: CascadesFitter });
       this._fits.set(camera, cameraFit);
+    }
+    if (this.demand !== 'auto') {
+      cameraFit.forgetDepths();
     }
     const { layers } = this.camera;
     // From r187 on, three.js draws the casters of the shadow camera's layers, if it has more than layer 0.

@@ -2,8 +2,6 @@
 
 import { WebGPUCoordinateSystem } from 'three';
 
-import { SunFitter as CascadesFitter } from '../cascades.js';
-import { SunFitter as WindowsFitter } from '../windows.js';
 import { isSame } from './bounds.js';
 
 /**
@@ -22,17 +20,29 @@ const NO_MASKS = new Uint8Array(0);
 
 /** The fitter of one camera, and its latest fit. */
 export class CameraFit {
-  constructor() {
+  /** @param {{ windows: Function, cascades?: Function }} fitters Classes of fitters, by their kind of maps. */
+  constructor(fitters) {
+    this.fitters = fitters;
     this.fitter = undefined;
     this.settings = undefined;
     /** @type {unknown[] | undefined} Everything that the latest fit was computed from. */
     this.input = undefined;
     /** @type {Fit} */
     this.fit = undefined;
-    /** Whether the visible surfaces were counted since the latest fit. */
+    /** Whether visible surfaces are known, and whether they were counted since the latest fit. */
+    this.isCounted = false;
     this.isRecounted = false;
     /** Input of the fit whose visible surfaces were read last. */
     this.read = undefined;
+  }
+
+  /** Forgets the visible surfaces. The boxes place the maps from now on. */
+  forgetDepths() {
+    if (this.isCounted) {
+      this.fitter?.forgetDepths();
+      this.isCounted = false;
+      this.isRecounted = true;
+    }
   }
 
   /** Returns a receiver of the visible surfaces of the latest fit's frame, unless they were read before. */
@@ -45,6 +55,7 @@ export class CameraFit {
       // The fitter may be another one now.
       if (this.fitter === fitter) {
         fitter.countDepths(depths, width, view, direction);
+        this.isCounted = true;
         this.isRecounted = true;
       }
     };
@@ -90,7 +101,7 @@ export class CameraFit {
   }
 
   run(scan, views, camera, { direction, casting, settings }) {
-    const Fitter = settings.isByDepth ? CascadesFitter : WindowsFitter;
+    const Fitter = settings.isByDepth ? this.fitters.cascades : this.fitters.windows;
     if (!(this.fitter instanceof Fitter)) {
       this.fitter = new Fitter(settings.fitter);
     } else if (this.settings !== settings.key) {

@@ -6,6 +6,7 @@ import { Fn, float } from 'three/tsl';
 import { isSame } from '../three/bounds.js';
 import { SceneScan } from '../three/scan.js';
 import { CameraFit, viewsOf } from '../three/view.js';
+import { SunFitter } from '../windows.js';
 import { DepthReader, WIDTH } from './demand.js';
 import { KEEP, Layer, OVERLAY, SPLIT } from './layers.js';
 import { LookUpUniforms, lookUp } from './lookup.js';
@@ -25,6 +26,9 @@ const MAX_AGE = 60;
 
 /** Cosine of the greatest turn of a camera from the counted surfaces: 20 degrees. */
 const MAX_TURN = Math.cos(Math.PI / 9);
+
+/** Fitters of cameras. There are no cascades here. */
+const FITTERS = { windows: SunFitter };
 
 /** The WebGL2 backend copies layers of depth textures since this release. */
 const COPIES_DEPTH = 187;
@@ -263,7 +267,7 @@ export class ShadowfitShadowNode extends ShadowBaseNode {
       const isOld = this.calls - counted.at > MAX_AGE && !counted.matrix.equals(camera.matrixWorld);
       const reach = 0.5 * (this.shadow._drawn?.fit.maps[0]?.width ?? Infinity);
       if (isOld || this.shadow.demand !== 'auto' || isCut(counted.matrix, camera.matrixWorld, reach)) {
-        slot.fit = new CameraFit();
+        slot.fit = new CameraFit(FITTERS);
         slot.counted = undefined;
       }
     }
@@ -337,7 +341,7 @@ export class ShadowfitShadowNode extends ShadowBaseNode {
         this.evicted.set(slot.camera, this.calls);
       }
       slot.camera = camera;
-      slot.fit = new CameraFit();
+      slot.fit = new CameraFit(FITTERS);
       slot.counted = undefined;
       slot.layers.forEach((layer) => layer.forget());
     }
@@ -357,7 +361,7 @@ export class ShadowfitShadowNode extends ShadowBaseNode {
 /** @returns {Slot} */
 function createSlot(first, count) {
   const layers = Array.from({ length: count }, (_, map) => new Layer(first + map));
-  return { camera: undefined, fit: new CameraFit(), counted: undefined, layers, used: 0 };
+  return { camera: undefined, fit: new CameraFit(FITTERS), counted: undefined, layers, used: 0 };
 }
 
 /** Returns whether a camera turned far, or moved farther than a distance. */
