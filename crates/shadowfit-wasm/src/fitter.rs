@@ -42,7 +42,7 @@ pub(crate) struct Fitter {
     pub(crate) depths: Vec<f32>,
     pub(crate) error: ErrorNumbers,
     settings: Option<Settings>,
-    fitter: ShadowFitter,
+    sun: ShadowFitter,
     receivers: Vec<Aabb>,
     casters: Vec<Aabb>,
     volumes: [CasterVolume; MAX_MAPS],
@@ -61,7 +61,7 @@ impl Fitter {
             depths: Vec::new(),
             error: ErrorNumbers::default(),
             settings: None,
-            fitter: ShadowFitter::default(),
+            sun: ShadowFitter::default(),
             receivers: Vec::new(),
             casters: Vec::new(),
             volumes: [CasterVolume::nowhere(DVec3::ZERO); MAX_MAPS],
@@ -71,7 +71,7 @@ impl Fitter {
     /// Reads the settings from the memory.
     pub(crate) fn configure(&mut self) {
         let settings = Settings::read(&self.settings_numbers);
-        self.fitter.set_technique(&settings.technique);
+        self.sun.set_technique(&settings.technique);
         self.settings = Some(settings);
     }
 
@@ -83,12 +83,12 @@ impl Fitter {
 
     /// Forgets all earlier frames.
     pub(crate) fn reset(&mut self) {
-        self.fitter.reset();
+        self.sun.reset();
     }
 
     /// Forgets the counted surfaces.
     pub(crate) fn forget_depths(&mut self) {
-        self.fitter.forget_visible_demand();
+        self.sun.forget_visible_demand();
     }
 
     /// Fits the maps of the frame in the memory. Returns their number.
@@ -102,7 +102,7 @@ impl Fitter {
         let listed = |boxes| Some(Boxes { origin: self.origin, boxes });
         let (receivers, casters) = (listed(&self.receivers), listed(&self.casters));
         let input = FitInput { receivers, casters, ..FitInput::new(views, frame.direction) };
-        let maps = self.fitter.fit(&input)?;
+        let maps = self.sun.fit(&input)?;
         for (i, map) in maps.iter().enumerate() {
             // Shaders of web pages take world positions.
             let bias = settings.bias(&map.projection.relative_to(DVec3::ZERO))?;
@@ -114,10 +114,10 @@ impl Fitter {
 
     /// Finds the casters of each map of the last fit.
     pub(crate) fn cull(&mut self, drawn: Drawn) {
-        let maps = self.fitter.fitted();
+        let maps = self.sun.fitted();
         let mut volumes = self.volumes;
         if drawn == Drawn::Kept {
-            let casters = self.fitter.technique().fit.casters;
+            let casters = self.sun.technique().fit.casters;
             for (volume, map) in volumes.iter_mut().zip(maps.iter()) {
                 *volume = CasterVolume::of_map(&map.projection, casters);
             }
@@ -129,7 +129,7 @@ impl Fitter {
 
     /// Counts the surfaces in a depth buffer of `width` columns, drawn with the first view of the memory.
     pub(crate) fn count_depths(&mut self, width: u32) -> Result<(), FitError> {
-        let fit = &self.fitter.technique().fit;
+        let fit = &self.sun.technique().fit;
         let frame = Frame::read(&self.input);
         let (frusta, _) = frame.frusta(fit.max_distance)?;
         let view: &ViewFrustum = &frusta[0];
@@ -138,7 +138,7 @@ impl Fitter {
         let mut demand = VisibleDemand::new(space);
         let clip_from_world = clip_from_world.as_mat4();
         demand.count_rows(&DepthRows { depths: &self.depths, width, clip_from_world, depth, view }, 1)?;
-        self.fitter.set_visible_demand(demand);
+        self.sun.set_visible_demand(demand);
         Ok(())
     }
 }

@@ -43,7 +43,8 @@ pub(crate) fn test() -> Result<()> {
     let package = pack()?;
     let folder = work_folder();
     let mut node = Command::new("node");
-    node.args(["--test", "--test-reporter=spec", "--test-concurrency=1", "--test-force-exit", "tests/"]).current_dir(&folder);
+    node.args(["--test", "--test-reporter=spec", "--test-concurrency=1", "--test-force-exit", "tests/"])
+        .current_dir(&folder);
     process::run(node.env("BROWSER", web::browser()?).env("PACKAGE", package))
 }
 
