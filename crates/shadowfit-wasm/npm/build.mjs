@@ -1,4 +1,4 @@
-// Optimises the WebAssembly modules and writes them as JavaScript, in which they start without a fetch, so that no bundler
+// Optimises the WebAssembly modules and writes them as JavaScript, so that they start without a fetch and no bundler
 // needs a setting: `node build.mjs FOLDER`, with windows.wasm and cascades.wasm in the folder.
 
 import { execFileSync } from 'node:child_process';

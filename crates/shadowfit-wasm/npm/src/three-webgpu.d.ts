@@ -2,6 +2,7 @@ import {
   type BufferGeometry, type Camera, type Light, LightShadow, type LineBasicMaterial, LineSegments, type OrthographicCamera,
   type Vector2,
 } from 'three';
+import { type Node } from 'three/webgpu';
 
 import { type MapReport } from './three.js';
 
@@ -78,7 +79,7 @@ export class ShadowfitShadow extends LightShadow<OrthographicCamera> {
   report(): ShadowfitReport;
   // Members that three.js calls.
   /** A new node for a light of three.js. */
-  readonly shadowNode: object;
+  readonly shadowNode: Node;
   updateMatrices(light: Light, viewCamera?: Camera): void;
 }
 

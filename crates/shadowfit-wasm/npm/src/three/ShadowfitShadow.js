@@ -25,6 +25,7 @@ import { reportOf } from './report.js';
 import {
   BASIC, BLEND, CASCADES, FADE, NO_END, PCF, VSM, isSize, problemOf, settingsOf, withDefaults,
 } from './settings.js';
+import { stockBiases } from './stock.js';
 import { CameraFit } from './view.js';
 import { nameOf, warnOnce } from './warn.js';
 
@@ -380,7 +381,11 @@ export class ShadowfitShadow extends LightShadow {
       this._setLit();
       return;
     }
-    atlas.place(fit.maps, this.camera._reversedDepth);
+    const reach = this._look === BASIC ? 0.5 : 1 + this.radius;
+    const size = Math.min(this.mapSize.x, this.mapSize.y);
+    const biases = this._isCovering ? { normalBias: 0, maps: fit.maps } : stockBiases(fit.maps, size, reach);
+    this.normalBias = biases.normalBias;
+    atlas.place(biases.maps, this.camera._reversedDepth);
     // Maps that will stay for several frames hold all casters.
     const isLasting = this._answer === WIDEN || !this._autoUpdate;
     const masks = isLasting ? fit.keptCasters : fit.casters;
