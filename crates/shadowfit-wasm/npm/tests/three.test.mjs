@@ -92,6 +92,8 @@ test('frames keep the maps until something changes in them', async () => {
     'a caster is hidden': true,
     'a caster stops casting': true,
     'a material changes its side': true,
+    'the texture of a cut-out moves': true,
+    'a part changes its material': true,
     'an instance count changes': true,
     'the sun turns': true,
     'the map size changes': true,
@@ -112,6 +114,10 @@ test('frames keep the maps until something changes in them', async () => {
     copies.setMatrixAt(1, new THREE.Matrix4().makeTranslation(-9, 4, 9));
     copies.castShadow = true;
     stage.scene.add(copies);
+    const map = new THREE.DataTexture(new Uint8Array([255, 255, 255, 255]), 1, 1);
+    map.needsUpdate = true;
+    const parts = addBox(stage.scene, [9, 4, -9], [1, 1, 1]);
+    parts.material = [new THREE.MeshLambertMaterial({ map, alphaTest: 0.5 }), new THREE.MeshLambertMaterial()];
     const { shadow } = stage.sun;
     const changes = {
       nothing: () => {},
@@ -123,6 +129,8 @@ test('frames keep the maps until something changes in them', async () => {
       'a caster is hidden': () => { caster.visible = false; },
       'a caster stops casting': () => { caster.visible = true; caster.castShadow = false; },
       'a material changes its side': () => { copies.material.side = THREE.DoubleSide; },
+      'the texture of a cut-out moves': () => map.offset.setX(0.5),
+      'a part changes its material': () => { parts.geometry.groups[0].materialIndex = 1; },
       'an instance count changes': () => { copies.count = 1; },
       'the sun turns': () => stage.sun.position.set(1, 2, 0),
       'the map size changes': () => shadow.mapSize.set(256, 256),

@@ -224,6 +224,9 @@ export class ShadowfitShadow extends LightShadow {
     this._faces.end();
     this._isSkipped = false;
     this._isInPass = false;
+    // A kept frame does not use its fit. Another frame needs another one.
+    this._prepared = undefined;
+    this._answer = undefined;
     if (this._frame.camera === camera) {
       this._frame.rows = renderer.getRenderTarget()?.height ?? renderer.getContext().drawingBufferHeight;
     }

@@ -282,6 +282,9 @@ function stampOf(object, casts) {
   if (casts) {
     if (Array.isArray(object.material)) {
       object.material.forEach(stampMaterial);
+      for (const { start, count, materialIndex } of geometry.groups) {
+        scratch.push(start, count, materialIndex);
+      }
     } else {
       stampMaterial(object.material);
     }
@@ -308,7 +311,23 @@ function stampMaterial(material) {
     material, material.version, material.visible, material.side, material.shadowSide, material.alphaTest,
     material.alphaToCoverage, material.wireframe, map, map?.version, alphaMap, alphaMap?.version, displacementMap,
     displacementMap?.version, material.displacementScale, material.displacementBias,
+    material.clipShadows ? material.clippingPlanes?.length : 0,
   );
+  if (material.alphaTest > 0) {
+    stampTransform(map);
+    stampTransform(alphaMap);
+  }
+}
+
+/** Appends the place of a texture whose alpha shapes a shadow. */
+function stampTransform(texture) {
+  if (texture) {
+    const { offset, repeat, rotation, center, matrix, matrixAutoUpdate } = texture;
+    scratch.push(offset.x, offset.y, repeat.x, repeat.y, rotation, center.x, center.y);
+    if (!matrixAutoUpdate) {
+      scratch.push(...matrix.elements);
+    }
+  }
 }
 
 /** Returns whether an object's picture in a map may change without any change that a scan finds. */

@@ -112,6 +112,7 @@ export class ShadowfitShadowNode extends ShadowBaseNode {
     // The texture is disposed of when it changes its size, or with the light.
     this.maps.onDispose = () => {
       this.slots = new WeakMap();
+      this.maps.refresh();
     };
   }
 

@@ -69,6 +69,8 @@ export class Maps {
     const { depthTexture } = this.target;
     Object.assign(depthTexture.image, { width, height, depth });
     depthTexture.needsUpdate = true;
+    // The size of the texture may stay although its layers get other maps.
+    this.target.dispose();
     this.target.setSize(width, height, depth);
   }
 

@@ -452,6 +452,8 @@ const TESTS = {
       }
       const changed = {};
       for (const [name, change] of Object.entries({
+        'one map': (shadow) => { shadow.maps = 1; },
+        'two maps': (shadow) => { shadow.maps = 2; },
         maps: (shadow) => { shadow.maps = 4; },
         mapSize: (shadow) => { shadow.mapSize.set(128, 256); },
         radius: (shadow) => { shadow.radius = 3; },
