@@ -160,6 +160,7 @@ pub(crate) fn test(tier: Tier, names: &[String], gpu: bool) -> Result<()> {
         report.run("tests of the core with the oldest glam", portability::suite_with_oldest_glam);
         report.run("lints and tests of bevy-shadowfit", bevy::check_and_test);
         report.run("tests of the page", || process::run(process::with_tools().args(["web", "--test", "--long"])));
+        report.run("tests of the npm package", || process::run(process::with_tools().args(["npm", "--test"])));
     }
     suite.say_left_out();
     report.finish()
