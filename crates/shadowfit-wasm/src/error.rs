@@ -2,12 +2,10 @@
 
 use shadowfit::FitError;
 
-/// Error number of a success.
-pub(crate) const NONE: u32 = 0;
-
 /// An error as numbers: its kind, the name of the input if there is one, and up to three values.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct ErrorNumbers {
+    /// Kind of the error, or 0 for a success.
     pub(crate) code: u32,
     pub(crate) input: &'static str,
     pub(crate) values: [f64; 3],

@@ -4,7 +4,7 @@
 
 use spin::Mutex;
 
-use crate::error::{ErrorNumbers, NONE};
+use crate::error::ErrorNumbers;
 use crate::fitter::{Drawn, Fitter};
 
 /// The fitter of this instance. A module has one thread, so the lock is always free.
@@ -107,7 +107,7 @@ extern "C" fn reset() {
 /// Returns the number of the last error, 0 for none.
 #[unsafe(no_mangle)]
 extern "C" fn error() -> u32 {
-    with(|fitter| if fitter.error.code == NONE { NONE } else { fitter.error.code })
+    with(|fitter| fitter.error.code)
 }
 
 /// Returns a value of the last error, by its index of 0 to 2.

@@ -143,7 +143,7 @@ impl Fitter {
     }
 }
 
-/// Collects the boxes with a flag. Boxes without an extent that makes sense are left out.
+/// Collects the boxes with a flag.
 fn collect(list: &mut Vec<Aabb>, boxes: &[Aabb], flags: &[u8], flag: u8) {
     list.clear();
     list.extend(boxes.iter().zip(flags).filter(|(_, flags)| *flags & flag != 0).map(|(aabb, _)| *aabb));

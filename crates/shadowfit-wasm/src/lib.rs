@@ -1,8 +1,8 @@
 //! The fitter of one sun and one camera as a WebAssembly module with plain exports over one memory.
 //!
 //! The npm package `shadowfit` in the folder `npm` wraps it. An instance of the module is a fitter: a page
-//! creates one for each sun and camera, and the garbage collector frees it. There are no handles, no
-//! generated JavaScript and no text: errors are numbers, and `npm/src/fitter.js` has their sentences.
+//! creates one for each sun and camera, and the garbage collector frees it. It has neither
+//! handles nor text: errors are numbers, and `npm/src/fitter.js` has their sentences.
 //!
 //! The caller writes numbers into the memory, calls a function, and reads numbers. All numbers are
 //! `f64` except boxes and depths, which are `f32`.

@@ -44,10 +44,9 @@ impl Settings {
             Cascades { count, selection, ..Cascades::default() }.into()
         };
         let (filter, softness) = filter(taps, disc);
-        let technique = Technique { filter, softness, ..Technique::default().with_maps(maps) }
+        let mut technique = Technique { filter, softness, ..Technique::default().with_maps(maps) }
             .with_resolution(width as u32, height as u32)
             .with_max_distance(distance.min(f32::MAX));
-        let mut technique = technique;
         technique.fit.up = Vec3::new(up_x, up_y, up_z);
         Self {
             technique,

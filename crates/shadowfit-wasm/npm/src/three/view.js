@@ -18,6 +18,12 @@ import { isSame } from './bounds.js';
 
 const NO_MASKS = new Uint8Array(0);
 
+/** Returns a fit without maps. @returns {Fit} */
+const noMaps = (origin, settings) =>
+  ({ maps: [], bits: [], casters: NO_MASKS, keptCasters: NO_MASKS, origin, settings, error: undefined });
+
+const UNUSABLE_CAMERA = 'the matrix of the camera is not finite; check its position, its field of view and its far plane';
+
 /** The fitter of one camera, and its latest fit. */
 export class CameraFit {
   /** @param {{ windows: Function, cascades?: Function }} fitters Classes of fitters, by their kind of maps. */
@@ -72,6 +78,11 @@ export class CameraFit {
    */
   update(scan, camera, { direction, casting, settings }) {
     const views = viewsOf(camera);
+    if (views.some(({ worldFromClip }) => !worldFromClip.every(Number.isFinite))) {
+      this.input = undefined;
+      this.fit = { ...noMaps([0, 0, 0], settings.key), error: new Error(UNUSABLE_CAMERA) };
+      return this.fit;
+    }
     const input = [scan, scan.version, scan.rows.length, settings.key, camera.layers.mask, casting.mask, ...direction];
     for (const { depth, worldFromClip } of views) {
       input.push(depth, ...worldFromClip);
@@ -85,9 +96,7 @@ export class CameraFit {
     this.direction = direction;
     this.isRecounted = false;
     const origin = [...views[0].eye];
-    this.fit = {
-      maps: [], bits: [], casters: NO_MASKS, keptCasters: NO_MASKS, origin, settings: settings.key, error: undefined,
-    };
+    this.fit = noMaps(origin, settings.key);
     if (scan.hasCasters && scan.hasReceivers) {
       try {
         this.run(scan, views, camera, { direction, casting, settings });
