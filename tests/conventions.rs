@@ -2,6 +2,7 @@
 //! next. Each crate's own tests check its own conventions.
 
 use shadowfit::Preset;
+use shadowfit::culling::Reader;
 use shadowfit::glam::{DVec3, Mat4, Vec3, Vec4};
 use shadowfit::settings::{BiasSettings, FitSettings, MapFormat};
 use shadowfit::{Bias, DepthConvention, FittedMap, LightProjection, PerspectiveCamera, Technique, fit};
@@ -12,7 +13,7 @@ use shadowfit_study::NamedTechnique;
 use shadowfit_truth::{Tracer, TruthSettings};
 use shadowfit_viewer::Stage;
 use shadowfit_wgpu::uniforms::{CasterUniform, MapUniform, ReceiverUniform};
-use shadowfit_wgpu::{MAX_MAPS, MapView, RESOLUTIONS, ShadowMapDescriptor};
+use shadowfit_wgpu::{MAX_MAPS, RESOLUTIONS, ShadowMapDescriptor};
 
 use crate::support::test_gpu;
 
@@ -49,11 +50,8 @@ fn the_caster_and_the_receiver_uniform_of_a_fit_meet_in_the_same_texel_and_depth
     for depth in DRAWABLE {
         let fit = fitted(&LightSettings::default(), depth);
         let clip_from_world = matrix(CasterUniform::new(&fit, origin).clip_from_world);
-        let receiver = ReceiverUniform::new(
-            &[map(&fit)],
-            &MapView::from_eye(origin, Vec3::NEG_Z),
-            &ShadowMapDescriptor::default(),
-        );
+        let receiver =
+            ReceiverUniform::new(&[map(&fit)], &Reader::from_eye(origin, Vec3::NEG_Z), &Technique::default().reading());
         let uv_from_world = matrix(receiver.maps[0].uv_from_world);
         for corner in fit.corners() {
             let point = (fit.origin + corner.as_dvec3() - origin).as_vec3();
@@ -75,8 +73,8 @@ fn settings_uniforms_and_pictures_all_point_to_the_same_sun() {
         let fit = fitted(&light, DepthConvention::ZeroToOne);
         let receiver = ReceiverUniform::new(
             &[map(&fit)],
-            &MapView::from_eye(fit.origin, Vec3::NEG_Z),
-            &ShadowMapDescriptor::default(),
+            &Reader::from_eye(fit.origin, Vec3::NEG_Z),
+            &Technique::default().reading(),
         );
         let frame = FrameUniform::new(camera(), to_light, true, &Atmosphere::default(), [16, 9]);
         assert!(Vec3::from(receiver.to_light).abs_diff_eq(to_light, CLOSE), "{light:?}: {:?}", receiver.to_light);
@@ -93,7 +91,7 @@ fn biases_move_the_receiver_toward_the_light_in_both_depth_conventions() {
     for (depth, toward_light) in [(DepthConvention::ZeroToOne, -1.0), (DepthConvention::Reversed, 1.0)] {
         let fit = fitted(&LightSettings::default(), depth);
         let map = FittedMap::new(fit, Bias::from_texels(&bias, MapFormat::Depth32Float, &fit));
-        let map = MapUniform::new(&map, fit.origin, &ShadowMapDescriptor::default());
+        let map = MapUniform::new(&map, fit.origin, &Technique::default().reading());
         let depth_of = |point: Vec3| matrix(map.uv_from_world).transform_point3(point).z;
         let lifted = depth_of(-fit.direction) - depth_of(Vec3::ZERO);
         assert!(lifted * toward_light > 0.0, "{depth:?}");
@@ -125,14 +123,14 @@ fn the_camera_s_uniform_has_reversed_depth_and_rays_through_its_pixels() {
 
 #[test]
 fn without_a_fit_everything_is_lit_and_surplus_fits_are_left_out() {
-    let none = ReceiverUniform::new(&[], &MapView::from_eye(DVec3::ZERO, Vec3::NEG_Z), &ShadowMapDescriptor::default());
+    let none = ReceiverUniform::new(&[], &Reader::from_eye(DVec3::ZERO, Vec3::NEG_Z), &Technique::default().reading());
     assert_eq!(none.map_count, 0);
     assert_eq!(Vec3::from(none.to_light).length(), 1.0, "a direction that can be used");
     let fit = fitted(&LightSettings::default(), DepthConvention::ZeroToOne);
     let many = ReceiverUniform::new(
         &[map(&fit); MAX_MAPS + 3],
-        &MapView::from_eye(DVec3::ZERO, Vec3::NEG_Z),
-        &ShadowMapDescriptor::default(),
+        &Reader::from_eye(DVec3::ZERO, Vec3::NEG_Z),
+        &Technique::default().reading(),
     );
     assert_eq!(many.map_count as usize, MAX_MAPS);
 }

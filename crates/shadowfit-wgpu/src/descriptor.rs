@@ -70,7 +70,7 @@ impl From<&Technique> for ShadowMapDescriptor {
             format: technique.format,
             filter: technique.filter,
             softness: technique.softness,
-            fade: fade(technique),
+            fade: technique.fade_depths(),
             selection: technique.maps.selection(),
             edges: technique.edges,
             depth: technique.fit.depth,
@@ -79,12 +79,6 @@ impl From<&Technique> for ShadowMapDescriptor {
             first_binding: 0,
         }
     }
-}
-
-/// Returns the view depths between which the shadows of a technique fade.
-fn fade(technique: &Technique) -> [f32; 2] {
-    let (end, share) = (technique.fit.max_distance, technique.fade);
-    if end < f32::MAX { [end * (1.0 - share.clamp(0.0, 1.0)), end] } else { [f32::MAX; 2] }
 }
 
 impl ShadowMapDescriptor {

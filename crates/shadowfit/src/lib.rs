@@ -280,6 +280,7 @@ pub mod cache;
 pub mod diagnostics;
 pub mod proof;
 pub mod spot;
+pub mod uniform;
 
 mod fitter;
 #[cfg(feature = "alloc")]

@@ -12,7 +12,7 @@ use shadowfit_gpu::bindings::{
 use shadowfit_gpu::catch_errors;
 
 use super::texture::is_array;
-use super::uniform::{CasterUniform, FadingUniform, ReceiverUniform};
+use super::uniform::{self, CasterUniform, FadingUniform, ReceiverUniform};
 use super::view::check;
 use crate::{MapTexture, MapView, ShadowMapDescriptor, ShadowMapError};
 
@@ -277,7 +277,7 @@ impl ShadowMap {
     /// On an error, no uniform is written.
     pub fn prepare(&mut self, queue: &wgpu::Queue, view: &MapView, maps: &[FittedMap]) -> Result<(), ShadowMapError> {
         self.prepare_casters(queue, view, maps)?;
-        self.write_receiver(queue, &ReceiverUniform::new(maps, view, &self.descriptor));
+        self.write_receiver(queue, &uniform::receiver(maps, view, &self.descriptor));
         Ok(())
     }
 
@@ -328,7 +328,9 @@ impl ShadowMap {
     /// Returns the uniform for a look-up into this set of maps alone, from a view other than the main pass.
     #[cfg(feature = "rays")]
     pub(crate) fn receiver_bytes(&self, view: &MapView, maps: &[FittedMap]) -> Vec<u8> {
-        self.of_set(&ReceiverUniform::on_planes(maps, view, &self.descriptor))
+        let Self { descriptor, .. } = self;
+        let uniform = ReceiverUniform::on_planes(maps, &view.reader(), &descriptor.reading());
+        self.of_set(&uniform.with_fade(descriptor.fade).with_frame(view.frame))
     }
 
     /// Creates a bind group with another uniform for the look-up.
@@ -342,7 +344,7 @@ impl ShadowMap {
     /// Blends another set of maps into the look-up, after [`Self::prepare`]. `share` is the share of this
     /// set.
     pub(crate) fn fade_from(&self, queue: &wgpu::Queue, before: &Self, maps: &[FittedMap], view: &MapView, share: f32) {
-        let uniform = ReceiverUniform::new(maps, view, &before.descriptor).in_layers(before.first_layer);
+        let uniform = uniform::receiver(maps, view, &before.descriptor).in_layers(before.first_layer);
         let write = |offset: usize, bytes: &[u8]| queue.write_buffer(&self.receiver_uniform, offset as u64, bytes);
         write(offset_of!(FadingUniform, before), bytemuck::bytes_of(&uniform));
         write(offset_of!(FadingUniform, share), bytemuck::bytes_of(&share));

@@ -33,7 +33,7 @@ impl MapView {
     }
 
     /// Returns the origin and the eye for the core.
-    pub(crate) fn reader(&self) -> Reader {
+    pub fn reader(&self) -> Reader {
         let Self { origin, eye, forward, .. } = *self;
         Reader { origin, eye, forward }
     }

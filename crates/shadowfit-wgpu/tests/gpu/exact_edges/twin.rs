@@ -357,12 +357,13 @@ fn forward(to_world: &DMat4, look: &Look) -> Vec3 {
 
 /// Returns the uniform of the look-up, with the depth change per texel even without receiver-plane bias.
 fn on_planes(maps: &[FittedMap], view: &MapView, descriptor: &ShadowMapDescriptor) -> ReceiverUniform {
-    let mut uniform = ReceiverUniform::new(maps, view, descriptor);
+    let (reader, reading) = (view.reader(), descriptor.reading());
+    let mut uniform = ReceiverUniform::new(maps, &reader, &reading).with_fade(descriptor.fade).with_frame(view.frame);
     for slot in uniform.maps.iter_mut().take(uniform.map_count as usize) {
         let map = &maps[slot.layer as usize];
         let with_plane = FittedMap { bias: Bias { receiver_plane: 1.0, ..map.bias }, ..*map };
         let MapUniform { depth_per_texel_u, depth_per_texel_v, .. } =
-            MapUniform::new(&with_plane, view.origin, descriptor);
+            MapUniform::new(&with_plane, view.origin, &reading);
         *slot = MapUniform { depth_per_texel_u, depth_per_texel_v, ..*slot };
     }
     uniform
