@@ -224,17 +224,15 @@ pub mod demand {
     pub(crate) mod from_boxes;
     pub(crate) mod grid;
     pub(crate) mod histogram;
-    #[cfg(feature = "alloc")]
     mod rows;
-    #[cfg(feature = "alloc")]
     mod visible_demand;
 
     pub use grid::{CELLS, DemandGrid, DemandSpace, LEVELS, MIN_FACING, PIXELS, SIDE};
     pub use histogram::{DepthBounds, DepthHistogram, needed_texel};
+    pub use rows::{DepthPicture, DepthRows};
     #[cfg(feature = "alloc")]
-    pub use rows::DepthRows;
-    #[cfg(feature = "alloc")]
-    pub use visible_demand::{CLASSES, COUNTS, DEPTHS, VisibleDemand, VisibleDemandSpace};
+    pub use visible_demand::VisibleDemand;
+    pub use visible_demand::{CLASSES, COUNTS, Counts, DEPTHS, VisibleDemandSpace};
 }
 
 mod input;

@@ -4,7 +4,7 @@ use glam::{DMat4, DVec3, DVec4, Mat4, Vec3};
 
 use super::grid::PIXELS;
 use super::histogram::needed_texel;
-use super::visible_demand::VisibleDemand;
+use super::visible_demand::{Counts, VisibleDemandSpace};
 use crate::base::{DepthConvention, FitError, checks};
 use crate::view::ViewFrustum;
 
@@ -26,7 +26,21 @@ pub struct DepthRows<'a> {
     pub view: &'a ViewFrustum,
 }
 
-impl VisibleDemand {
+/// A depth buffer whose depths a function returns, such as one with gaps between its rows or with its bottom row
+/// first.
+#[derive(Clone, Copy, Debug)]
+pub struct DepthPicture<'a> {
+    /// Width and height, in pixels.
+    pub size: [u32; 2],
+    /// As [`DepthRows::clip_from_world`].
+    pub clip_from_world: Mat4,
+    /// As [`DepthRows::depth`].
+    pub depth: DepthConvention,
+    /// As [`DepthRows::view`].
+    pub view: &'a ViewFrustum,
+}
+
+impl VisibleDemandSpace {
     /// Counts the points of a depth buffer that face the light: one for each `stride` pixels across and down.
     /// Few points are enough. In a picture of 1280 × 720 pixels, a stride of 56 with some 300 points gave
     /// 0.301% wrong pixels, and 129,600 points gave 0.311%.
@@ -39,43 +53,67 @@ impl VisibleDemand {
     ///
     /// [`FitError::OutOfRange`] for incomplete rows, a width below 3 and a stride of 0.
     /// [`FitError::NotFinite`] for a matrix without an inverse.
-    pub fn count_rows(&mut self, rows: &DepthRows, stride: u32) -> Result<(), FitError> {
-        let picture = Picture::new(rows)?;
+    pub fn count_rows(&self, counts: &mut Counts, rows: &DepthRows, stride: u32) -> Result<(), FitError> {
+        let DepthRows { depths, width, clip_from_world, depth, view } = *rows;
+        checks::within("the width of depth rows", f64::from(width), 3.0, f64::from(u32::MAX))?;
+        let height = depths.len() / width as usize;
+        let rest = (depths.len() % width as usize) as f64;
+        checks::within("the depths of the last row", rest, 0.0, 0.0)?;
+        let size = [width, u32::try_from(height).unwrap_or(u32::MAX)];
+        let picture = DepthPicture { size, clip_from_world, depth, view };
+        self.count_picture(counts, &picture, stride, |x, y| depths[y * width as usize + x])
+    }
+
+    /// Counts points as [`Self::count_rows`]. `stored` returns the stored depth at a column and a row, counted
+    /// from the top left.
+    ///
+    /// # Errors
+    ///
+    /// [`FitError::OutOfRange`] for a width or a height below 3 and a stride of 0. [`FitError::NotFinite`] for a
+    /// matrix without an inverse.
+    pub fn count_picture(
+        &self,
+        counts: &mut Counts,
+        picture: &DepthPicture,
+        stride: u32,
+        stored: impl Fn(usize, usize) -> f32,
+    ) -> Result<(), FitError> {
+        let DepthPicture { clip_from_world, view, .. } = *picture;
+        let picture = Picture::new(picture, stored)?;
         checks::within("the stride of depth rows", f64::from(stride), 1.0, f64::from(u32::MAX))?;
         let stride = stride as usize;
         // A grid is counted for pictures of a fixed height.
-        let pixels = picture.height as f32 / PIXELS * rows.view.height_in_picture(&rows.clip_from_world);
+        let pixels = picture.height as f32 / PIXELS * view.height_in_picture(&clip_from_world);
         // Starts in the middle of the first stride, with a neighbour on all sides.
         let first = |pixels: usize| (stride / 2).clamp(1, pixels - 2);
         for y in (first(picture.height)..picture.height - 1).step_by(stride) {
             for x in (first(picture.width)..picture.width - 1).step_by(stride) {
                 if let Some(point) = picture.point(x, y) {
-                    self.count_point(&point, rows.view.forward, pixels);
+                    self.count_point(counts, &point, view.forward, pixels);
                 }
             }
         }
         Ok(())
     }
 
-    fn count_point(&mut self, point: &Point, forward: Vec3, pixels: f32) {
+    fn count_point(&self, counts: &mut Counts, point: &Point, forward: Vec3, pixels: f32) {
         let Point { position, ray, right, down, pixel } = *point;
         let depth = position.dot(forward.as_dvec3());
         // Shadows end there.
-        if depth >= f64::from(self.space().far) {
+        if depth >= f64::from(self.far) {
             return;
         }
         let normal = down.cross(right);
         let toward_eye = if normal.dot(ray) > 0.0 { -normal } else { normal };
         let Ok(normal) = checks::unit("a normal", toward_eye.as_vec3()) else { return };
-        let direction = self.space().demand.direction;
+        let direction = self.demand.direction;
         let [right, down] = [right, down].map(DVec3::as_vec3);
-        let space = self.space().demand;
         if normal.dot(direction.as_dvec3()) < 0.0 {
             let texel = f64::from(needed_texel(right, down, direction));
-            self.count_depth(depth as f32, libm::log2(pixel / texel) as f32);
+            self.count_depth(counts, depth as f32, libm::log2(pixel / texel) as f32);
         }
-        if let Some(cell) = space.index(position.as_vec3(), normal.as_vec3(), right * pixels, down * pixels) {
-            self.count_cell(cell);
+        if let Some(cell) = self.demand.index(position.as_vec3(), normal.as_vec3(), right * pixels, down * pixels) {
+            self.count_cell(counts, cell);
         }
     }
 }
@@ -92,8 +130,8 @@ struct Point {
     pixel: f64,
 }
 
-struct Picture<'a> {
-    depths: &'a [f32],
+struct Picture<F> {
+    depth_at: F,
     width: usize,
     height: usize,
     world_from_clip: DMat4,
@@ -103,30 +141,28 @@ struct Picture<'a> {
     depth: (f64, f64),
 }
 
-impl<'a> Picture<'a> {
-    fn new(rows: &DepthRows<'a>) -> Result<Self, FitError> {
-        let width = rows.width as usize;
-        checks::within("the width of depth rows", f64::from(rows.width), 3.0, f64::from(u32::MAX))?;
-        let height = rows.depths.len() / width;
-        checks::within("the number of depth rows", height as f64, 3.0, f64::from(u32::MAX))?;
-        let rest = (rows.depths.len() % width) as f64;
-        checks::within("the depths of the last row", rest, 0.0, 0.0)?;
-        let world_from_clip = rows.clip_from_world.as_dmat4().inverse();
+impl<F: Fn(usize, usize) -> f32> Picture<F> {
+    fn new(picture: &DepthPicture, stored: F) -> Result<Self, FitError> {
+        let [width, height] = picture.size;
+        checks::within("the width of depth rows", f64::from(width), 3.0, f64::from(u32::MAX))?;
+        checks::within("the number of depth rows", f64::from(height), 3.0, f64::from(u32::MAX))?;
+        let world_from_clip = picture.clip_from_world.as_dmat4().inverse();
         if !world_from_clip.is_finite() {
             return Err(FitError::NotFinite { input: "the inverse of a depth buffer's matrix", value: f64::NAN });
         }
-        let (far, depth) = match rows.depth {
+        let (far, depth) = match picture.depth {
             DepthConvention::ZeroToOne => (1.0, (1.0, 0.0)),
             DepthConvention::Reversed => (0.0, (1.0, 0.0)),
             DepthConvention::NegativeOneToOne => (1.0, (2.0, -1.0)),
         };
-        let forward = rows.view.forward.as_dvec3();
-        Ok(Self { depths: rows.depths, width, height, world_from_clip, forward, far, depth })
+        let forward = picture.view.forward.as_dvec3();
+        let [width, height] = [width, height].map(|pixels| pixels as usize);
+        Ok(Self { depth_at: stored, width, height, world_from_clip, forward, far, depth })
     }
 
     /// Returns the stored depth of a pixel, or `None` if no surface was drawn.
     fn stored(&self, x: usize, y: usize) -> Option<f64> {
-        let depth = self.depths[y * self.width + x];
+        let depth = (self.depth_at)(x, y);
         (depth != self.far && depth.is_finite()).then_some(f64::from(depth))
     }
 
@@ -175,12 +211,12 @@ impl<'a> Picture<'a> {
     }
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "alloc"))]
 mod tests {
     use alloc::vec::Vec;
 
     use super::*;
-    use crate::demand::VisibleDemandSpace;
+    use crate::demand::VisibleDemand;
     use crate::view::PerspectiveCamera;
 
     const WIDTH: u32 = 160;
@@ -283,14 +319,13 @@ mod tests {
     #[test]
     fn points_lie_where_the_ground_is() {
         let depths = ground(DepthConvention::Reversed);
-        let rows = DepthRows {
-            depths: &depths,
-            width: WIDTH,
+        let picture = DepthPicture {
+            size: [WIDTH, HEIGHT],
             clip_from_world: camera().clip_from_world(DepthConvention::Reversed),
             depth: DepthConvention::Reversed,
             view: &camera().frustum().expect("a camera"),
         };
-        let picture = Picture::new(&rows).expect("a picture");
+        let picture = Picture::new(&picture, |x, y| depths[y * WIDTH as usize + x]).expect("a picture");
         for x in [1, 40, 158] {
             let Point { position, ray: _, right, down, pixel } = picture.point(x, 80).expect("the ground");
             assert!((position.y + 2.0).abs() < 1e-3, "{position}");

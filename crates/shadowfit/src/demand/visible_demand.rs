@@ -5,13 +5,17 @@
 //! [`ShadowFitter::set_visible_demand`](crate::ShadowFitter::set_visible_demand). Without counts, fits
 //! estimate the visible surfaces from the boxes.
 
-use alloc::vec;
-use alloc::vec::Vec;
+#[cfg(feature = "alloc")]
+use alloc::{boxed::Box, vec::Vec};
 
-use glam::{DVec3, Vec3};
+#[cfg(feature = "alloc")]
+use glam::DVec3;
+use glam::Vec3;
 
 use super::grid::{CELLS, DemandGrid, DemandSpace};
 use super::histogram::DepthHistogram;
+#[cfg(feature = "alloc")]
+use super::rows::DepthRows;
 use crate::base::FitError;
 use crate::view::ViewFrustum;
 
@@ -24,7 +28,13 @@ pub const CLASSES: usize = 6;
 /// Length of the counts: cells of the grid, then bins of the histogram.
 pub const COUNTS: usize = CELLS + DEPTHS * CLASSES;
 
+/// Counts of visible points: cells of the grid, then bins of the histogram, class by class.
+pub type Counts = [u32; COUNTS];
+
 /// Space in which the points of a picture are counted.
+///
+/// Its methods count in memory that the caller owns. [`VisibleDemand`](crate::VisibleDemand) owns its memory and needs
+/// the feature `alloc`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VisibleDemandSpace {
     /// The cells of the grid.
@@ -45,43 +55,74 @@ impl VisibleDemandSpace {
         let demand = DemandSpace::new(view, direction, up, distance)?;
         Ok(Self { demand, near: view.near, far: view.far.min(distance) })
     }
-}
-
-/// Visible demand: counts of the points in a picture that face the light.
-#[derive(Clone, Debug, PartialEq)]
-pub struct VisibleDemand {
-    space: VisibleDemandSpace,
-    /// The [`COUNTS`] counts.
-    counts: Vec<u32>,
-}
-
-impl VisibleDemand {
-    /// Creates a demand without points.
-    pub fn new(space: VisibleDemandSpace) -> Self {
-        Self { space, counts: vec![0; COUNTS] }
-    }
-
-    /// Creates a demand from counts: the cells of the grid, then the bins of the histogram, class by class.
-    /// Returns `None` if their number is not [`COUNTS`].
-    pub fn from_counts(space: VisibleDemandSpace, counts: Vec<u32>) -> Option<Self> {
-        (counts.len() == COUNTS).then_some(Self { space, counts })
-    }
 
     /// Counts a point in a cell of the grid, by [`DemandSpace::index`]. An index outside the grid is ignored.
-    pub fn count_cell(&mut self, index: usize) {
-        if let Some(count) = self.counts[..CELLS].get_mut(index) {
+    pub fn count_cell(&self, counts: &mut Counts, index: usize) {
+        if let Some(count) = counts[..CELLS].get_mut(index) {
             *count = count.saturating_add(1);
         }
     }
 
     /// Counts a point in a bin of the histogram. `depth` is its view depth, in metres, and `class` its class,
     /// as for [`DepthHistogram::bin`].
-    pub fn count_depth(&mut self, depth: f32, class: f32) {
-        let VisibleDemandSpace { near, far, .. } = self.space;
-        if let Some(bin) = DepthHistogram::bin(near, far, DEPTHS, CLASSES, depth, class) {
-            let count = &mut self.counts[CELLS + bin];
+    pub fn count_depth(&self, counts: &mut Counts, depth: f32, class: f32) {
+        if let Some(bin) = DepthHistogram::bin(self.near, self.far, DEPTHS, CLASSES, depth, class) {
+            let count = &mut counts[CELLS + bin];
             *count = count.saturating_add(1);
         }
+    }
+
+    /// Returns the grid of visible points and the texel sizes that they need.
+    pub fn grid<'a>(&self, counts: &'a Counts) -> DemandGrid<'a> {
+        DemandGrid { space: self.demand, counts: &counts[..CELLS] }
+    }
+
+    /// Returns the histogram of the points' view depths.
+    pub fn histogram<'a>(&self, counts: &'a Counts) -> DepthHistogram<'a> {
+        DepthHistogram { near: self.near, far: self.far, bins: &counts[CELLS..], classes: CLASSES }
+    }
+}
+
+/// Visible demand: counts of the points in a picture that face the light.
+#[cfg(feature = "alloc")]
+#[derive(Clone, Debug, PartialEq)]
+pub struct VisibleDemand {
+    space: VisibleDemandSpace,
+    counts: Box<Counts>,
+}
+
+#[cfg(feature = "alloc")]
+impl VisibleDemand {
+    /// Creates a demand without points.
+    #[allow(clippy::large_stack_arrays, reason = "optimised builds write the zeros to the heap")]
+    pub fn new(space: VisibleDemandSpace) -> Self {
+        Self { space, counts: Box::new([0; COUNTS]) }
+    }
+
+    /// Creates a demand from counts: the cells of the grid, then the bins of the histogram, class by class.
+    /// Returns `None` if their number is not [`COUNTS`].
+    pub fn from_counts(space: VisibleDemandSpace, counts: Vec<u32>) -> Option<Self> {
+        let counts = counts.into_boxed_slice().try_into().ok()?;
+        Some(Self { space, counts })
+    }
+
+    /// Counts a point in a cell of the grid: [`VisibleDemandSpace::count_cell`].
+    pub fn count_cell(&mut self, index: usize) {
+        self.space.count_cell(&mut self.counts, index);
+    }
+
+    /// Counts a point in a bin of the histogram: [`VisibleDemandSpace::count_depth`].
+    pub fn count_depth(&mut self, depth: f32, class: f32) {
+        self.space.count_depth(&mut self.counts, depth, class);
+    }
+
+    /// Counts the points of a depth buffer that face the light: [`VisibleDemandSpace::count_rows`].
+    ///
+    /// # Errors
+    ///
+    /// As [`VisibleDemandSpace::count_rows`].
+    pub fn count_rows(&mut self, rows: &DepthRows, stride: u32) -> Result<(), FitError> {
+        self.space.count_rows(&mut self.counts, rows, stride)
     }
 
     /// Returns the space of the counts.
@@ -98,18 +139,19 @@ impl VisibleDemand {
 
     /// Returns the grid of visible points and the texel sizes that they need.
     pub fn demand(&self) -> DemandGrid<'_> {
-        DemandGrid { space: self.space.demand, counts: &self.counts[..CELLS] }
+        self.space.grid(&self.counts)
     }
 
     /// Returns the histogram of the points' view depths.
     pub fn histogram(&self) -> DepthHistogram<'_> {
-        let VisibleDemandSpace { near, far, .. } = self.space;
-        DepthHistogram { near, far, bins: &self.counts[CELLS..], classes: CLASSES }
+        self.space.histogram(&self.counts)
     }
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "alloc"))]
 mod tests {
+    use alloc::vec;
+
     use super::*;
     use crate::view::PerspectiveCamera;
 
