@@ -2,6 +2,9 @@
 //! text for an issue thread. Plain data, filled in by the checking code and shown by panels and command
 //! lines.
 
+use alloc::string::String;
+use alloc::vec::Vec;
+use alloc::{borrow::ToOwned, format};
 use core::fmt::Write as _;
 
 /// State of one check.

@@ -1,5 +1,10 @@
 //! Access to a parameter's value: reading, setting, and writing it as Rust code.
 
+use alloc::borrow::ToOwned;
+use alloc::format;
+use alloc::string::{String, ToString as _};
+use alloc::vec::Vec;
+
 use glam::UVec2;
 use shadowfit::Technique;
 use shadowfit::settings::{
@@ -295,7 +300,7 @@ macro_rules! choice {
         $crate::field::Field {
             code: Some($crate::field::Code {
                 path: $crate::field::code!(@path $($path).+),
-                expression: |technique| format!(concat!(stringify!($kind), "::{:?}"), technique $(.$path)+),
+                expression: |technique| alloc::format!(concat!(stringify!($kind), "::{:?}"), technique $(.$path)+),
             }),
             ..$crate::field::choice!(technique $(.$path)+ in [$($kind::$variant),+])
         }

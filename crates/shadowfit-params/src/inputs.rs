@@ -1,7 +1,7 @@
 //! Inputs that tools give a fit besides the views and the light. An engine passes the data that it has; a
 //! tool chooses.
 
-use std::fmt;
+use core::fmt;
 
 use shadowfit::Technique;
 

@@ -20,6 +20,13 @@
 //! ```
 //!
 //! Angles are degrees here and radians in the settings; lengths are metres and biases texels in both.
+//!
+//! The crate needs an allocator but not the standard library. [`set_value`] does not allocate.
+#![no_std]
+
+extern crate alloc;
+#[cfg(test)]
+extern crate std;
 
 mod field;
 mod inputs;
@@ -31,6 +38,8 @@ pub mod device_check;
 pub mod figures;
 pub mod tool;
 
+use alloc::borrow::ToOwned;
+
 use crate::field::Field;
 use crate::tool::Settings;
 use shadowfit::Technique;
@@ -38,7 +47,7 @@ use shadowfit::Technique;
 pub use inputs::{BoxSource, Inputs, NAMED_INPUTS, NamedInputs};
 pub use rust_code::to_rust;
 pub use table::{PARAMETERS, view_option};
-pub use text::{ParameterError, format_value, set_from_str};
+pub use text::{ParameterError, RejectedValue, RejectionReason, format_value, set_from_str, set_value};
 
 /// Least ratio of the far plane and of the shadow distance to the near distance. The setting that is changed
 /// wins and moves the others.

@@ -1,6 +1,10 @@
 //! A technique as Rust code to paste into an engine.
 
-use std::fmt::Write as _;
+use alloc::borrow::ToOwned as _;
+use alloc::format;
+use alloc::string::String;
+use alloc::vec::Vec;
+use core::fmt::Write as _;
 
 use shadowfit::{PRESETS, Technique};
 

@@ -1,6 +1,9 @@
 //! Parameter values as text, for command lines and saved files.
 
-use std::fmt;
+use alloc::borrow::ToOwned;
+use alloc::format;
+use alloc::string::{String, ToString};
+use core::fmt;
 
 use super::{Kind, Number, PARAMETERS, Parameter, Value, parameter, technique_parameters};
 use crate::tool::Settings;
@@ -17,39 +20,54 @@ use crate::tool::Settings;
 /// or the parameter [does not exist](Parameter::get) under these settings.
 pub fn set_from_str(settings: &mut Settings, id: &str, value: &str) -> Result<(), ParameterError> {
     let parameter = parameter(id).ok_or_else(|| ParameterError::UnknownId { id: id.to_owned() })?;
-    let value = parse(parameter, value.trim())?;
+    set_value(settings, parameter, value).map_err(ParameterError::from)
+}
+
+/// Sets a parameter as [`set_from_str`] does, without allocating.
+///
+/// # Errors
+///
+/// [`RejectedValue`], with `settings` unchanged: the parameter does not take the value, or [does not
+/// exist](Parameter::get) under these settings.
+pub fn set_value<'a>(
+    settings: &mut Settings,
+    parameter: &'static Parameter,
+    value: &'a str,
+) -> Result<(), RejectedValue<'a>> {
+    let value = value.trim();
+    let rejected = |reason| RejectedValue { parameter, value, reason };
+    let parsed = parse(parameter, value).map_err(rejected)?;
     // Unset is always valid for a parameter that does not exist.
-    if !parameter.is_present(settings) && value != Value::Unset {
+    if !parameter.is_present(settings) && parsed != Value::Unset {
         let reason = (parameter.inert)(settings).unwrap_or_default();
-        return Err(ParameterError::NotPresent { parameter, reason });
+        return Err(rejected(RejectionReason::NotPresent(reason)));
     }
-    parameter.set(settings, value);
+    parameter.set(settings, parsed);
     Ok(())
 }
 
 /// Parses a text as a value of the parameter.
-fn parse(parameter: &'static Parameter, text: &str) -> Result<Value, ParameterError> {
-    let value = || text.to_owned();
+fn parse(parameter: &Parameter, text: &str) -> Result<Value, RejectionReason> {
     match &parameter.kind {
         Kind::Number(Number { unset: Some(unset), .. }) if unset.option.id == text => Ok(Value::Unset),
         Kind::Number(Number { min, max, decimals, .. }) => {
-            let number: f64 = text.parse().map_err(|_| ParameterError::NotANumber { parameter, value: value() })?;
+            let number: f64 = text.parse().map_err(|_| RejectionReason::NotANumber)?;
             if !(*min..=*max).contains(&number) {
-                Err(ParameterError::OutOfRange { parameter, value: value() })
-            } else if *decimals == 0 && number.trunc() != number {
-                Err(ParameterError::NotANumber { parameter, value: value() })
+                Err(RejectionReason::OutOfRange)
+            } else if *decimals == 0 && libm::trunc(number) != number {
+                Err(RejectionReason::NotANumber)
             } else {
                 Ok(Value::Number(number))
             }
         }
         Kind::Choice(options) => {
             let index = options.iter().position(|option| option.id == text);
-            index.map(Value::Option).ok_or_else(|| ParameterError::UnknownOption { parameter, value: value() })
+            index.map(Value::Option).ok_or(RejectionReason::UnknownOption)
         }
         Kind::Toggle => match text {
             "true" | "on" => Ok(Value::Toggle(true)),
             "false" | "off" => Ok(Value::Toggle(false)),
-            _ => Err(ParameterError::UnknownOption { parameter, value: value() }),
+            _ => Err(RejectionReason::UnknownOption),
         },
     }
 }
@@ -85,6 +103,50 @@ fn number_text(settings: &Settings, parameter: &Parameter, value: f64, range: &N
     texts.into_iter().find(restores).unwrap_or_else(|| value.to_string())
 }
 
+/// A value that a parameter does not take. Its text names the parameter and the valid values.
+#[derive(Clone, Copy, Debug)]
+pub struct RejectedValue<'a> {
+    /// The parameter.
+    pub parameter: &'static Parameter,
+    /// The rejected value.
+    pub value: &'a str,
+    /// Reason of the rejection.
+    pub reason: RejectionReason,
+}
+
+/// Reason why a parameter does not take a value.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RejectionReason {
+    /// The value is not a number, or not a whole number where one is required.
+    NotANumber,
+    /// The number lies outside the parameter's range, or is NaN.
+    OutOfRange,
+    /// The value is not an option of the parameter.
+    UnknownOption,
+    /// The parameter does not exist with the value of another parameter. The text names the setting to change
+    /// first.
+    NotPresent(&'static str),
+}
+
+impl core::error::Error for RejectedValue<'_> {}
+
+impl fmt::Display for RejectedValue<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { parameter, value, reason } = *self;
+        match reason {
+            RejectionReason::NotANumber => write!(f, "{} is {value:?}; give ", parameter.id)?,
+            RejectionReason::OutOfRange => {
+                write!(f, "{} is {value}, which is out of range; give ", parameter.id)?;
+            }
+            RejectionReason::UnknownOption => {
+                write!(f, "{} is {value:?}, which is not one of its options; give ", parameter.id)?;
+            }
+            RejectionReason::NotPresent(reason) => return write!(f, "{} cannot be set: {reason}", parameter.id),
+        }
+        allowed(f, parameter)
+    }
+}
+
 /// Reason why a parameter could not be set from text.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
@@ -94,42 +156,29 @@ pub enum ParameterError {
         /// The requested id.
         id: String,
     },
-    /// The value is not a number, or not a whole number where one is required.
-    NotANumber {
-        /// The parameter.
-        parameter: &'static Parameter,
-        /// The rejected value.
-        value: String,
-    },
     /// The parameter is not part of a [`Technique`](shadowfit::Technique).
     NotOfTechnique {
         /// The requested id.
         id: String,
     },
-    /// The number lies outside the parameter's range, or is NaN.
-    OutOfRange {
+    /// The parameter does not take the value.
+    Rejected {
         /// The parameter.
         parameter: &'static Parameter,
         /// The rejected value.
         value: String,
-    },
-    /// The value is not an option of the parameter.
-    UnknownOption {
-        /// The parameter.
-        parameter: &'static Parameter,
-        /// The rejected value.
-        value: String,
-    },
-    /// The parameter does not exist with the value of another parameter.
-    NotPresent {
-        /// The parameter.
-        parameter: &'static Parameter,
-        /// Reason, with the setting to change first.
-        reason: &'static str,
+        /// Reason of the rejection.
+        reason: RejectionReason,
     },
 }
 
-impl std::error::Error for ParameterError {}
+impl core::error::Error for ParameterError {}
+
+impl From<RejectedValue<'_>> for ParameterError {
+    fn from(RejectedValue { parameter, value, reason }: RejectedValue<'_>) -> Self {
+        Self::Rejected { parameter, value: value.to_owned(), reason }
+    }
+}
 
 impl fmt::Display for ParameterError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -142,21 +191,7 @@ impl fmt::Display for ParameterError {
                 write!(f, "{id} is not a parameter of a technique, which has ")?;
                 list(f, technique_parameters().map(|parameter| parameter.id))
             }
-            Self::NotANumber { parameter, value } => {
-                write!(f, "{} is {value:?}; give ", parameter.id)?;
-                allowed(f, parameter)
-            }
-            Self::OutOfRange { parameter, value } => {
-                write!(f, "{} is {value}, which is out of range; give ", parameter.id)?;
-                allowed(f, parameter)
-            }
-            Self::UnknownOption { parameter, value } => {
-                write!(f, "{} is {value:?}, which is not one of its options; give ", parameter.id)?;
-                allowed(f, parameter)
-            }
-            Self::NotPresent { parameter, reason } => {
-                write!(f, "{} cannot be set: {reason}", parameter.id)
-            }
+            Self::Rejected { parameter, value, reason } => RejectedValue { parameter, value, reason: *reason }.fmt(f),
         }
     }
 }
@@ -181,5 +216,9 @@ fn allowed(f: &mut fmt::Formatter<'_>, parameter: &Parameter) -> fmt::Result {
 
 /// Writes words separated by commas.
 fn list(f: &mut fmt::Formatter<'_>, words: impl Iterator<Item = &'static str>) -> fmt::Result {
-    f.write_str(&words.collect::<Vec<_>>().join(", "))
+    for (number, word) in words.enumerate() {
+        f.write_str(if number == 0 { "" } else { ", " })?;
+        f.write_str(word)?;
+    }
+    Ok(())
 }

@@ -316,10 +316,10 @@ impl LightSettings {
         let turned = self.animate_speed * seconds;
         if let Some(hour) = &mut self.hour {
             let next = *hour - DAY.0 + turned / TURN_IN_AN_HOUR as f32;
-            *hour = DAY.0 + next.rem_euclid(DAY.1 - DAY.0);
+            *hour = DAY.0 + remainder(next.into(), (DAY.1 - DAY.0).into()) as f32;
         } else {
             self.file = None;
-            self.azimuth = (self.azimuth + turned + PI).rem_euclid(TAU) - PI;
+            self.azimuth = remainder((self.azimuth + turned + PI).into(), TAU.into()) as f32 - PI;
         }
     }
 
@@ -334,13 +334,19 @@ impl LightSettings {
         }
         // Adding +0 makes the negative zeros of the negation positive, since atan2 distinguishes them.
         let to_light = -(direction / length) + 0.0;
-        let horizontal = (to_light.x * to_light.x + to_light.z * to_light.z).sqrt();
+        let horizontal = libm::sqrt(to_light.x * to_light.x + to_light.z * to_light.z);
         Some(Self {
             azimuth: libm::atan2(to_light.x, to_light.z) as f32,
             elevation: libm::atan2(to_light.y, horizontal) as f32,
             ..Self::default()
         })
     }
+}
+
+/// Returns the remainder of a division, at least 0 for a positive divisor.
+pub(crate) fn remainder(value: f64, divisor: f64) -> f64 {
+    let remainder = value % divisor;
+    if remainder < 0.0 { remainder + divisor } else { remainder }
 }
 
 /// Returns the direction of travel of the day's light at an hour: from the east, +x, through the south, +z,

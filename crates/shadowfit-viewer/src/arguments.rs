@@ -9,7 +9,7 @@ use shadowfit_adapter::{AdapterChoice, AdapterOptions};
 use shadowfit_classics::{SAMPLES, SampleValues};
 use shadowfit_egui::{KeyGroup, KeyHelp, KeyLayout, key_table};
 use shadowfit_params::tool::Settings;
-use shadowfit_params::{self as params, Kind, Number, Parameter, ParameterError};
+use shadowfit_params::{self as params, Kind, Number, Parameter, ParameterError, RejectionReason};
 use shadowfit_study::NamedTechnique;
 
 use crate::platform::output;
@@ -221,7 +221,9 @@ impl Arguments {
     ///
     /// If the technique or a parameter does not exist, or a value is invalid under any settings.
     pub(crate) fn apply_what_is_there(&self, settings: &mut Settings) -> Result<Option<NamedTechnique>> {
-        self.apply_unless(settings, |error| matches!(error, ParameterError::NotPresent { .. }))
+        self.apply_unless(settings, |error| {
+            matches!(error, ParameterError::Rejected { reason: RejectionReason::NotPresent(_), .. })
+        })
     }
 
     fn apply_unless(

@@ -1,12 +1,12 @@
 //! The rows for the tools' settings: sun, camera and view.
 
-use std::f64::consts::TAU;
+use core::f64::consts::TAU;
 
 use shadowfit::settings::MAX_MAPS;
 
 use super::{always_active, pull_near};
 use crate::field::{Field, Plain as _, choice, field};
-use crate::tool::{DAY, ErrorMarks, FLYING_SPEEDS, HEIGHTS, InsetMaps, Settings, ViewMode};
+use crate::tool::{DAY, ErrorMarks, FLYING_SPEEDS, HEIGHTS, InsetMaps, Settings, ViewMode, remainder};
 use crate::{ChoiceOption, Group, Kind, MIN_FAR_PER_NEAR, Number, Parameter, Unset, Value};
 
 /// Names and help texts of the views, in the order of [`ViewMode::ALL`].
@@ -508,5 +508,5 @@ fn with_inset(s: &Settings) -> Option<&'static str> {
 fn turn(radians: f64) -> f64 {
     // 2π in f32 exceeds a full turn slightly. An angle that was set to 360 degrees should read as 360.
     const TOLERANCE: f64 = 1e-6;
-    if (0.0..=TAU + TOLERANCE).contains(&radians) { radians } else { radians.rem_euclid(TAU) }
+    if (0.0..=TAU + TOLERANCE).contains(&radians) { radians } else { remainder(radians, TAU) }
 }

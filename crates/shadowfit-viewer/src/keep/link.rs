@@ -15,7 +15,7 @@ use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, percent_decode_str, utf8_perc
 use shadowfit_classics::SampleValues;
 use shadowfit_egui::Artefact;
 use shadowfit_params::tool::Settings;
-use shadowfit_params::{self as params, PARAMETERS, ParameterError};
+use shadowfit_params::{self as params, PARAMETERS, ParameterError, RejectionReason};
 use shadowfit_render::FlyCamera;
 use shadowfit_scene::builtin::BuiltinScene;
 
@@ -241,7 +241,9 @@ impl Reader {
         match params::set_from_str(&mut Settings::default(), id, value) {
             Err(ParameterError::UnknownId { .. }) => self.unknown.push(key.to_owned()),
             // It may exist with the other settings of the link.
-            Ok(()) | Err(ParameterError::NotPresent { .. }) => pairs.push((id.to_owned(), value.to_owned())),
+            Ok(()) | Err(ParameterError::Rejected { reason: RejectionReason::NotPresent(_), .. }) => {
+                pairs.push((id.to_owned(), value.to_owned()))
+            }
             Err(error) => return Err(error.into()),
         }
         Ok(())
