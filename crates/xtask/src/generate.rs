@@ -7,9 +7,9 @@ use std::fs;
 
 use anyhow::{Context, Result, ensure};
 
-#[cfg(feature = "tools")]
-use crate::maths;
 use crate::process;
+#[cfg(feature = "tools")]
+use crate::{capi, maths};
 
 /// Lines around the first example of a Markdown page, and of a crate's docs.
 const PAGE: [&str; 2] = ["```rust\n", "```"];
@@ -59,7 +59,10 @@ fn stale() -> Result<Vec<(String, String)>> {
         files.push((name.to_owned(), [before, &part, after].concat()));
     }
     #[cfg(feature = "tools")]
-    files.extend(maths::pictures()?);
+    {
+        files.extend(maths::pictures()?);
+        files.push((capi::HEADER.to_owned(), capi::header()?));
+    }
     files.retain(|(name, text)| read(name).ok().as_ref() != Some(text));
     Ok(files)
 }

@@ -38,6 +38,8 @@ pub(crate) enum Part {
     Node,
     /// npm, which installs the driver library for Node.js.
     Npm,
+    /// `CMake`, which builds a program against the C library.
+    Cmake,
     /// `pkg-config` and libudev's development files, for building the gamepad feature.
     Libudev,
 }
@@ -103,6 +105,7 @@ impl Machine {
             Part::Chromium => BROWSERS.iter().any(|name| in_path(name)),
             Part::Node => in_path("node"),
             Part::Npm => in_path("npm"),
+            Part::Cmake => in_path("cmake"),
             Part::Libudev => process::succeeds(Command::new("pkg-config").args(["--exists", "libudev"])),
         };
         Self { parts: all_parts().filter(is_there).collect(), display }
@@ -152,6 +155,7 @@ fn all_parts() -> impl Iterator<Item = Part> {
         Part::Chromium,
         Part::Node,
         Part::Npm,
+        Part::Cmake,
         Part::Libudev,
     ]
     .into_iter()

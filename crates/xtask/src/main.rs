@@ -7,6 +7,8 @@
 mod bevy;
 #[cfg(feature = "tools")]
 mod bundle;
+#[cfg(feature = "tools")]
+mod capi;
 mod ci;
 #[cfg(test)]
 mod docs;
@@ -124,6 +126,15 @@ enum Task {
         #[arg(long, requires = "figures")]
         quick: bool,
     },
+    /// Build the C library, and write it with header, shaders and an example into an archive in out/c.
+    Capi {
+        /// Writes the archive into this folder instead.
+        #[arg(long, value_name = "DIR")]
+        archive: Option<std::path::PathBuf>,
+        /// Tests the library in C, with sanitizers, in threads, and against the same fits in Rust.
+        #[arg(long, conflicts_with = "archive")]
+        test: bool,
+    },
     /// Rewrite the golden images of the tests; look at the diff before committing it.
     Golden,
 }
@@ -158,10 +169,19 @@ fn main() -> ExitCode {
         Task::Npm { figures: true, quick, .. } => npm::figures(quick),
         #[cfg(feature = "tools")]
         Task::Npm { .. } => npm::pack().map(|_| ()),
-        #[cfg(not(feature = "tools"))]
-        Task::Npm { .. } | Task::Bundle { .. } | Task::Generate | Task::Gallery { .. } | Task::Web { .. } => {
-            process::run(process::with_tools().args(std::env::args_os().skip(1)))
+        #[cfg(feature = "tools")]
+        Task::Capi { test: true, .. } => capi::test(),
+        #[cfg(feature = "tools")]
+        Task::Capi { archive, .. } => {
+            capi::archive(&archive.unwrap_or_else(|| process::root().join("out/c"))).map(|_| ())
         }
+        #[cfg(not(feature = "tools"))]
+        Task::Npm { .. }
+        | Task::Capi { .. }
+        | Task::Bundle { .. }
+        | Task::Generate
+        | Task::Gallery { .. }
+        | Task::Web { .. } => process::run(process::with_tools().args(std::env::args_os().skip(1))),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -19,6 +19,8 @@ pub(crate) enum Purpose {
     Pictures,
     /// Testing the page: the software driver, and a browser with its driver tools.
     Page,
+    /// Testing the C library: `CMake`.
+    C,
     /// Running the tests: the software driver of the golden images, and the tools of the window test.
     Test,
     /// Also drawing on a second software driver.
@@ -82,6 +84,9 @@ fn missing_packages(purpose: Purpose, machine: &Machine) -> Vec<&'static str> {
     // To run the viewer, any driver will do. The golden images need the software driver.
     let driver =
         if matches!(purpose, Purpose::Run | Purpose::Peers) { Part::VulkanDriver } else { Part::SoftwareDriver };
+    if purpose == Purpose::C {
+        return if machine.has(Part::Cmake) { Vec::new() } else { vec!["cmake"] };
+    }
     let mut needs = vec![(Part::VulkanLoader, "libvulkan1"), (driver, "mesa-vulkan-drivers")];
     if testing || machine.display == Display::X11 {
         needs.extend(WINDOW_LIBRARIES.map(|(library, package)| (Part::WindowLibrary(library), package)));

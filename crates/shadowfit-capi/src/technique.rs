@@ -1,0 +1,392 @@
+//! Techniques by name and as text: the TOML of technique files, line by line and without allocations.
+//!
+//! ```text
+//! [splits]
+//! count = 3
+//! [map]
+//! filter = "pcf_3x3"
+//! ```
+
+use core::ffi::{CStr, c_char};
+
+use shadowfit::settings::{CasterPolicy, FilterKind, MapFormat, MapSelection};
+use shadowfit::{PRESETS, Technique};
+use shadowfit_params::tool::Settings;
+use shadowfit_params::{Group, PARAMETERS, set_value};
+use toml_parser::decoder::{Encoding, StringBuilder};
+use toml_parser::lexer::Token;
+use toml_parser::parser::{EventReceiver, parse_document};
+use toml_parser::{ErrorSink, ParseError, Source, Span};
+
+use crate::error::{Failure, ShadowfitResult as Code};
+use crate::types::ShadowfitTechnique;
+use crate::view::depth_number;
+
+/// Returns the preset with a name.
+pub(crate) fn preset(name: &str) -> Result<Technique, Failure> {
+    PRESETS.iter().find(|preset| preset.name == name).map(shadowfit::Preset::technique).ok_or_else(|| {
+        Failure::new(
+            Code::ShadowfitUnknownPreset,
+            format_args!("there is no preset {name:?}; shadowfit_preset lists them, such as {:?}", PRESETS[0].name),
+        )
+    })
+}
+
+/// Returns the name of a preset by its index, or `None` behind the last one.
+pub(crate) fn preset_name(index: usize) -> Option<&'static CStr> {
+    const NAMES: [&CStr; 10] = [
+        c"xna-1",
+        c"aabb-1",
+        c"oriented-1",
+        c"focused-1",
+        c"stable-4",
+        c"focused-4",
+        c"calm-4",
+        c"windows-8",
+        c"exact-4",
+        c"windows-4",
+    ];
+    NAMES.get(index).copied()
+}
+
+/// Greatest number of parameters that a text may set: all.
+const MAX_ENTRIES: usize = 128;
+
+/// Greatest number of tokens in a line. A setting has fewer than ten.
+const MAX_TOKENS: usize = 64;
+
+/// A value of the text.
+#[derive(Clone, Copy)]
+struct Entry {
+    value: Word,
+    line: usize,
+}
+
+/// A key or a value, without quotes. No key and no option is longer.
+#[derive(Clone, Copy)]
+struct Word {
+    bytes: [u8; Self::CAPACITY],
+    length: usize,
+}
+
+impl Word {
+    const CAPACITY: usize = 48;
+    const EMPTY: Self = Self { bytes: [0; Self::CAPACITY], length: 0 };
+
+    fn as_str(&self) -> &str {
+        core::str::from_utf8(&self.bytes[..self.length]).unwrap_or_default()
+    }
+
+    fn push(&mut self, text: &str) -> bool {
+        let Some(free) = self.bytes.get_mut(self.length..self.length + text.len()) else { return false };
+        free.copy_from_slice(text.as_bytes());
+        self.length += text.len();
+        true
+    }
+}
+
+impl StringBuilder<'_> for Word {
+    fn clear(&mut self) {
+        self.length = 0;
+    }
+
+    fn push_str(&mut self, text: &str) -> bool {
+        self.push(text)
+    }
+
+    fn push_char(&mut self, letter: char) -> bool {
+        self.push(letter.encode_utf8(&mut [0; 4]))
+    }
+}
+
+/// Returns a technique with the parameters that a text sets. All others keep their values.
+pub(crate) fn with_text(technique: &Technique, text: &str) -> Result<Technique, Failure> {
+    let mut file = File { group: None, entries: [None; MAX_ENTRIES] };
+    for (line, text) in (1..).zip(text.lines()) {
+        file.read(line, text)?;
+    }
+    let mut settings = Settings::default().with_technique(*technique);
+    // In the order of the parameter table, so that a scheme comes before the numbers that only it has.
+    for (parameter, entry) in PARAMETERS.iter().zip(&file.entries) {
+        let Some(Entry { value, line, .. }) = entry else { continue };
+        set_value(&mut settings, parameter, value.as_str()).map_err(|rejected| failure(*line, rejected))?;
+    }
+    Ok(settings.technique)
+}
+
+/// The values of a text, in the order of the parameter table.
+struct File {
+    group: Option<Group>,
+    entries: [Option<Entry>; MAX_ENTRIES],
+}
+
+impl File {
+    /// Reads a line: a header, a value, or neither.
+    fn read(&mut self, number: usize, text: &str) -> Result<(), Failure> {
+        let source = Source::new(text);
+        let mut lexer = source.lex();
+        let Some(first) = lexer.next() else { return Ok(()) };
+        let mut tokens: [Token; MAX_TOKENS] = [first; MAX_TOKENS];
+        let mut count = 1;
+        for token in lexer {
+            let free = tokens.get_mut(count).ok_or_else(|| failure(number, "the line is too long"))?;
+            (*free, count) = (token, count + 1);
+        }
+        let mut line = Line { source, path: [Word::EMPTY; 2], depth: 0, is_header: false, value: None };
+        let mut error: Option<ParseError> = None;
+        parse_document(&tokens[..count], &mut line, &mut error);
+        if let Some(error) = error {
+            return Err(failure(number, error.description()));
+        }
+        if line.is_header {
+            return self.open(number, &line);
+        }
+        let Some(value) = line.value else { return Ok(()) };
+        self.set(number, &line, value)
+    }
+
+    /// Begins a table.
+    fn open(&mut self, number: usize, line: &Line) -> Result<(), Failure> {
+        let name = line.path[0].as_str();
+        let group = Group::ALL.into_iter().find(|group| is_of_file(*group) && group.id() == name && line.depth == 1);
+        self.group = Some(group.ok_or_else(|| {
+            failure(
+                number,
+                format_args!(
+                    "there is no group {name:?}; there are {}",
+                    Names(|index: usize| Group::ALL.get(index).map(|group| group.id()))
+                ),
+            )
+        })?);
+        Ok(())
+    }
+
+    /// Sets a value.
+    fn set(&mut self, number: usize, line: &Line, value: Word) -> Result<(), Failure> {
+        let [first, second] = [line.path[0].as_str(), line.path[1].as_str()];
+        let [group, key] = match (self.group, line.depth) {
+            // Technique files have a name and a summary before their tables.
+            (None, 1) if matches!(first, "name" | "summary") => return Ok(()),
+            (Some(group), 1) => [group.id(), first],
+            (None, 2) => [first, second],
+            _ => ["", first],
+        };
+        let found = PARAMETERS.iter().position(|parameter| parameter.id.split_once('.') == Some((group, key)));
+        let index =
+            found.filter(|index| is_of_file(PARAMETERS[*index].group)).ok_or_else(|| unknown(number, group, key))?;
+        let parameter = &PARAMETERS[index];
+        let entry = &mut self.entries[index.min(MAX_ENTRIES - 1)];
+        if let Some(earlier) = entry {
+            return Err(failure(number, format_args!("{} is already set in line {}", parameter.id, earlier.line)));
+        }
+        // The boxes of a fit are in its input. Files of the tools also choose between several lists.
+        if parameter.group.is_technique() {
+            *entry = Some(Entry { value, line: number });
+        }
+        Ok(())
+    }
+}
+
+/// Returns whether technique files contain a group.
+fn is_of_file(group: Group) -> bool {
+    group.is_technique() || group == Group::Input
+}
+
+fn failure(line: usize, text: impl core::fmt::Display) -> Failure {
+    Failure::new(Code::ShadowfitBadTechnique, format_args!("line {line}: {text}"))
+}
+
+/// Returns the error for a key that no group has.
+fn unknown(line: usize, group: &str, key: &str) -> Failure {
+    let groups = || Group::ALL.into_iter().filter(|group| is_of_file(*group));
+    let Some(known) = groups().find(|known| known.id() == group) else {
+        return failure(line, format_args!("{key:?} is in no group; write it under a header such as [map]"));
+    };
+    let name = |index: usize| known.parameters().nth(index).and_then(|row| row.id.split_once('.')).map(|(_, key)| key);
+    failure(line, format_args!("there is no parameter {group}.{key}; under [{group}] there are {}", Names(name)))
+}
+
+/// Names by their index, separated by commas.
+struct Names<F>(F);
+
+impl<F: Fn(usize) -> Option<&'static str>> core::fmt::Display for Names<F> {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        for index in 0.. {
+            let Some(name) = (self.0)(index) else { break };
+            f.write_str(if index == 0 { "" } else { ", " })?;
+            f.write_str(name)?;
+        }
+        Ok(())
+    }
+}
+
+/// The parts of a line.
+struct Line<'a> {
+    source: Source<'a>,
+    /// First two parts of the header or key.
+    path: [Word; 2],
+    /// Number of parts.
+    depth: usize,
+    is_header: bool,
+    value: Option<Word>,
+}
+
+impl Line<'_> {
+    fn refuse(span: Span, error: &mut dyn ErrorSink) {
+        error.report_error(
+            ParseError::new("a value is a number, a text in quotes, true or false").with_unexpected(span),
+        );
+    }
+}
+
+impl EventReceiver for Line<'_> {
+    fn std_table_open(&mut self, _: Span, _: &mut dyn ErrorSink) {
+        self.is_header = true;
+    }
+
+    fn array_table_open(&mut self, span: Span, error: &mut dyn ErrorSink) {
+        error.report_error(ParseError::new("a header has single brackets, such as [map]").with_unexpected(span));
+    }
+
+    fn inline_table_open(&mut self, span: Span, error: &mut dyn ErrorSink) -> bool {
+        Self::refuse(span, error);
+        false
+    }
+
+    fn array_open(&mut self, span: Span, error: &mut dyn ErrorSink) -> bool {
+        Self::refuse(span, error);
+        false
+    }
+
+    fn simple_key(&mut self, span: Span, encoding: Option<Encoding>, error: &mut dyn ErrorSink) {
+        let Some(raw) = self.source.get(span) else { return };
+        let mut key = Word::EMPTY;
+        toml_parser::Raw::new_unchecked(raw.as_str(), encoding, span).decode_key(&mut key, error);
+        if let Some(part) = self.path.get_mut(self.depth) {
+            *part = key;
+        }
+        self.depth += 1;
+    }
+
+    fn scalar(&mut self, span: Span, encoding: Option<Encoding>, error: &mut dyn ErrorSink) {
+        let Some(raw) = self.source.get(span) else { return };
+        let mut value = Word::EMPTY;
+        let raw = toml_parser::Raw::new_unchecked(raw.as_str(), encoding, span);
+        // Long texts are names for people, which this library ignores.
+        let mut ignored: Option<ParseError> = None;
+        let errors: &mut dyn ErrorSink = if encoding.is_some() { &mut ignored } else { error };
+        let _kind = raw.decode_scalar(&mut value, errors);
+        self.value = Some(value);
+    }
+}
+
+/// Returns the parts of a technique that create textures and choose shaders.
+pub(crate) fn written(technique: &Technique) -> ShadowfitTechnique {
+    let selection = technique.maps.selection();
+    ShadowfitTechnique {
+        size: size_of::<ShadowfitTechnique>() as u32,
+        map_count: technique.maps.count(),
+        resolution: technique.fit.resolution.to_array(),
+        depth: depth_number(technique.fit.depth),
+        clamps_depth: u32::from(crate::casters::policy(technique) == CasterPolicy::DepthClamp),
+        by_view_depth: u32::from(matches!(selection, MapSelection::ViewDepth { .. })),
+        blend: selection.blend(),
+        filter_radius: technique.filter_radius(),
+        filter: filter_name(technique.filter),
+        format: format_name(technique.format),
+    }
+}
+
+const fn filter_name(filter: FilterKind) -> *const c_char {
+    match filter {
+        FilterKind::Point => c"point",
+        FilterKind::Hardware2x2 => c"hardware_2x2",
+        FilterKind::Pcf3x3 => c"pcf_3x3",
+        FilterKind::Pcf5x5 => c"pcf_5x5",
+        FilterKind::Pcf7x7 => c"pcf_7x7",
+        FilterKind::Vogel8 => c"vogel_8",
+        FilterKind::Vogel16 => c"vogel_16",
+        FilterKind::Vogel32 => c"vogel_32",
+        FilterKind::Pcss => c"pcss",
+    }
+    .as_ptr()
+}
+
+const fn format_name(format: MapFormat) -> *const c_char {
+    match format {
+        MapFormat::Depth32Float => c"depth32float",
+        MapFormat::Depth24Unorm => c"depth24_unorm",
+        MapFormat::Depth16Unorm => c"depth16_unorm",
+        MapFormat::R32Float => c"r32float",
+        MapFormat::R16Float => c"r16_float",
+        MapFormat::Rgba8Packed => c"rgba8_packed",
+        MapFormat::R8Grey => c"r8_grey",
+    }
+    .as_ptr()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn refused(text: &str) -> String {
+        let failure = with_text(&Technique::default(), text).map(|_| ()).expect_err(text);
+        failure.text.as_c_str().to_string_lossy().into_owned()
+    }
+
+    #[test]
+    fn the_names_of_presets_filters_and_formats_are_those_of_the_other_crates() {
+        for (index, preset) in PRESETS.iter().enumerate() {
+            assert_eq!(preset_name(index).expect("a name").to_str(), Ok(preset.name));
+        }
+        assert_eq!(preset_name(PRESETS.len()), None);
+        let ids = |id: &str| match &shadowfit_params::parameter(id).expect("a parameter").kind {
+            shadowfit_params::Kind::Choice(options) => options.iter().map(|option| option.id).collect::<Vec<_>>(),
+            _ => panic!("options"),
+        };
+        // SAFETY: the pointers are of literals.
+        let name = |name: *const c_char| unsafe { CStr::from_ptr(name) }.to_str().expect("ASCII");
+        assert_eq!(FilterKind::ALL.map(|filter| name(filter_name(filter))).to_vec(), ids("map.filter"));
+        assert_eq!(MapFormat::ALL.map(|format| name(format_name(format))).to_vec(), ids("map.format"));
+    }
+
+    #[test]
+    fn a_text_sets_the_parameters_that_it_names_in_any_order_and_keeps_the_others() {
+        let text = "name = \"mine\\n\"\nsummary = 'x'\nbias.slope = 1_0.5\r\n\n# a comment\n[splits]\nlambda = 0.25 # after\nscheme = \
+                    \"practical\"\n[\"map\"]\nfilter = \"pcf_3x3\"\n[input]\nboxes = \"objects\"\n";
+        let start = preset("calm-4").unwrap_or_default().with_resolution(512, 512);
+        let read = with_text(&start, text).map_err(|failure| failure.text.as_c_str().to_owned()).expect("valid");
+        assert_eq!(
+            (read.bias.slope, read.filter, read.fit.resolution),
+            (10.5, FilterKind::Pcf3x3, start.fit.resolution)
+        );
+        assert!(format!("{:?}", read.maps).contains("Practical(0.25)"));
+    }
+
+    #[test]
+    fn a_wrong_text_names_line_and_key() {
+        for (text, words) in [
+            ("[bias]\nbent = 1", &["line 2", "bias.bent", "slope"][..]),
+            ("\n\ncolour = 1", &["line 3", "colour", "[map]"]),
+            ("[sun]", &["line 1", "sun", "splits"]),
+            ("[light]\nelevation = 30", &["line 1", "light"]),
+            ("[map]\nresolution = 64", &["line 2", "map.resolution", "64"]),
+            ("[map]\nfilter = \"blur\"", &["line 2", "map.filter", "blur", "pcf_5x5"]),
+            ("[map]\nfilter = pcf", &["line 2"]),
+            ("[map]\n\nfade = 0.1\nfade = 0.2", &["line 4", "map.fade", "line 3"]),
+            ("[splits]\nlambda = 0.5", &["line 2", "splits.lambda"]),
+            ("[bias]\nslope = nan", &["line 2", "bias.slope"]),
+            ("[map]\nfade = [[[[1]]]]", &["line 2", "number"]),
+            ("[map]\nfade = {a = 1}", &["line 2", "number"]),
+            ("[[map]]", &["line 1", "brackets"]),
+            ("[map", &["line 1"]),
+            ("[map]\nfade =", &["line 2"]),
+            ("[map]\nfade", &["line 2"]),
+            ("[map.fade]\nx = 1", &["line 1", "map"]),
+        ] {
+            let error = refused(text);
+            assert!(words.iter().all(|word| error.contains(word)), "{text}: {error}");
+        }
+        assert!(refused(&". ".repeat(1000)).contains("too long"));
+    }
+}
