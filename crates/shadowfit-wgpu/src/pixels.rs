@@ -99,6 +99,7 @@ fn lies_in([left, top, width, height]: [u32; 4], [columns, rows]: [u32; 2]) -> b
 /// depth to homogeneous positions in the source space of `clip_from_world`. Returns `None` if the matrix has
 /// no inverse. `size` is the size of the view's rectangle, in pixels. If depth is not reversed, most of the
 /// view lies near depth 1. Differences from 1 are exact in f32, and small enough for an f32 matrix.
+#[cfg(feature = "rays")]
 pub(crate) fn world_from_pixel(clip_from_world: &Mat4, size: [u32; 2], convention: DepthConvention) -> Option<DMat4> {
     let [width, height] = size.map(f64::from);
     let clip_from_pixel = DMat4::from_cols(

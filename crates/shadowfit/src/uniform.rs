@@ -30,15 +30,17 @@
 //! # Ok::<(), FitError>(())
 //! ```
 
-use glam::{DVec3, Vec2, Vec3};
+use glam::{DMat4, DVec3, DVec4, Mat4, Vec2, Vec3};
 
-use crate::base::DepthConvention;
+use crate::base::{DepthConvention, FitError};
 use crate::culling::Reader;
+use crate::demand::{DEPTHS, DepthPicture, PIXELS, VisibleDemandSpace};
 use crate::map::FittedMap;
 use crate::projection::LightProjection;
 use crate::selection::{MapOrder, MapReading};
 use crate::technique::Technique;
 use crate::technique::settings::{MAX_MAPS, Softness};
+use crate::view::ViewFrustum;
 
 /// Shift of the rotation pattern of discs from frame to frame, in pixels, and period of the pattern, in
 /// frames (J. Jimenez, "Next generation post processing in Call of Duty: Advanced Warfare", 2014).
@@ -145,6 +147,33 @@ pub struct ReceiverUniform {
     pub padding_1: u32,
     /// Maps in selection order; see [`MapOrder`].
     pub maps: [MapUniform; MAX_MAPS],
+}
+
+/// Uniform of the demand pass, a compute shader that counts the points of a depth buffer as
+/// [`VisibleDemandSpace::count_picture`](crate::demand::VisibleDemandSpace::count_picture): `Demand` in WGSL,
+/// where the fields are explained.
+#[allow(missing_docs)]
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "bytemuck", derive(bytemuck::Pod, bytemuck::Zeroable))]
+pub struct DemandUniform {
+    pub world_from_pixel: [[f32; 4]; 4],
+    pub view: [f32; 4],
+    pub direction: [f32; 3],
+    pub far_depth: f32,
+    pub x: [f32; 3],
+    pub cell: f32,
+    pub y: [f32; 3],
+    pub shape: f32,
+    pub corner: [u32; 2],
+    pub size: [u32; 2],
+    pub step: u32,
+    pub pixels: f32,
+    pub exponent: i32,
+    pub near: f32,
+    pub far: f32,
+    pub bins_per_octave: f32,
+    pub pixel_width: [f32; 2],
 }
 
 impl CasterUniform {
@@ -268,4 +297,83 @@ impl Technique {
         let (end, share) = (self.fit.max_distance, self.fade);
         if end < f32::MAX { [end * (1.0 - share.clamp(0.0, 1.0)), end] } else { NO_FADE }
     }
+}
+
+impl DemandUniform {
+    /// Returns the uniform for a depth buffer, and for points that are counted in a space. One point is counted
+    /// per `step` pixels across and down. The view begins at the pixel `corner` of its texture.
+    ///
+    /// # Errors
+    ///
+    /// [`FitError::NotFinite`] for a matrix without an inverse.
+    pub fn new(
+        picture: &DepthPicture,
+        space: &VisibleDemandSpace,
+        step: u32,
+        corner: [u32; 2],
+    ) -> Result<Self, FitError> {
+        let DepthPicture { size, clip_from_world, depth, view } = *picture;
+        let VisibleDemandSpace { demand: space, near, far } = *space;
+        // The histogram has no bins for negative or zero depths, which orthographic views may have.
+        let octaves = libm::log2(f64::from(far) / f64::from(near));
+        let (first, bins_per_octave) = if near > 0.0 { (near, DEPTHS as f64 / octaves) } else { (f32::MAX, 0.0) };
+        Ok(Self {
+            world_from_pixel: world_from_pixel(&clip_from_world, size, depth)?.to_cols_array_2d(),
+            view: view_depth(view),
+            direction: space.direction.to_array(),
+            far_depth: if depth == DepthConvention::Reversed { 0.0 } else { 1.0 },
+            x: space.x.to_array(),
+            cell: space.cell,
+            y: space.y.to_array(),
+            shape: 1.0 / space.y.length(),
+            corner,
+            size,
+            step,
+            pixels: size[1] as f32 / PIXELS * view.height_in_picture(&clip_from_world),
+            exponent: ((space.texel.to_bits() >> 23) & 0xff).cast_signed(),
+            near: first,
+            far,
+            bins_per_octave: bins_per_octave as f32,
+            pixel_width: pixel_width(view),
+        })
+    }
+}
+
+/// Returns the matrix from a pixel's column and row, and its stored depth minus the far plane's, to the homogeneous
+/// position relative to the eye. The difference keeps its digits at far depths.
+fn world_from_pixel(clip_from_world: &Mat4, size: [u32; 2], depth: DepthConvention) -> Result<Mat4, FitError> {
+    let [width, height] = size.map(f64::from);
+    let (scale, far) = match depth {
+        DepthConvention::ZeroToOne => (1.0, 1.0),
+        DepthConvention::Reversed => (1.0, 0.0),
+        DepthConvention::NegativeOneToOne => (2.0, 1.0),
+    };
+    let clip_from_pixel = DMat4::from_cols(
+        DVec4::X * (2.0 / width),
+        DVec4::Y * (-2.0 / height),
+        DVec4::Z * scale,
+        DVec4::new(1.0 / width - 1.0, 1.0 - 1.0 / height, far, 1.0),
+    );
+    let clip_from_world = clip_from_world.as_dmat4();
+    let matrix = (clip_from_world.inverse() * clip_from_pixel).as_mat4();
+    if clip_from_world.determinant() != 0.0 && matrix.is_finite() {
+        return Ok(matrix);
+    }
+    Err(FitError::NotFinite { input: "the inverse of a depth buffer's matrix", value: f64::NAN })
+}
+
+/// Returns the plane whose distance from a position relative to the eye is its view depth, in metres.
+fn view_depth(view: &ViewFrustum) -> [f32; 4] {
+    // The centre of the near rectangle is the most precise point.
+    let middle = (view.corners[0] + view.corners[2]) * 0.5;
+    view.forward.extend(view.near - view.forward.dot(middle)).to_array()
+}
+
+/// Returns the width of a pixel on a surface that faces the eye, in metres: at view depth 0, and its growth per
+/// metre of view depth. The pixel has the size that it would have if the frustum were [`PIXELS`] high.
+fn pixel_width(view: &ViewFrustum) -> [f32; 2] {
+    let height = |top: usize, bottom: usize| (view.corners[top].as_dvec3() - view.corners[bottom].as_dvec3()).length();
+    let (at_near, at_far) = (height(0, 3), height(4, 7));
+    let growth = (at_far - at_near) / (f64::from(view.far) - f64::from(view.near));
+    [at_near - growth * f64::from(view.near), growth].map(|width| (width / f64::from(PIXELS)) as f32)
 }

@@ -1,14 +1,13 @@
 //! Camera that a depth buffer was drawn with, and the uniform for it.
 
-use bytemuck::{Pod, Zeroable};
-use shadowfit::demand::PIXELS;
-use shadowfit::demand::{DEPTHS, VisibleDemandSpace};
+use shadowfit::demand::{DepthPicture, VisibleDemandSpace};
 use shadowfit::glam::{DVec3, Mat4, Vec3};
 use shadowfit::settings::MapSettings;
+pub use shadowfit::uniform::DemandUniform;
 use shadowfit::{DepthConvention, PerspectiveCamera, ViewFrustum};
 
 use super::error::DemandPassError;
-use crate::pixels::{DepthBufferError, world_from_pixel};
+use crate::pixels::DepthBufferError;
 
 /// Greatest number of rows at which every pixel is counted. In a larger picture only every second, third, ...
 /// pixel is counted, across and down, so that the pass takes the same time at any resolution. In the
@@ -36,30 +35,6 @@ pub struct DemandView {
     pub max_distance: f32,
     /// Part of the depth texture that the view fills, in pixels: left, top, width, height.
     pub rectangle: [u32; 4],
-}
-
-/// Uniform of the pass: `Demand` in WGSL, where the fields are explained.
-#[allow(missing_docs)]
-#[repr(C)]
-#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
-pub struct DemandUniform {
-    pub world_from_pixel: [[f32; 4]; 4],
-    pub view: [f32; 4],
-    pub direction: [f32; 3],
-    pub far_depth: f32,
-    pub x: [f32; 3],
-    pub cell: f32,
-    pub y: [f32; 3],
-    pub shape: f32,
-    pub corner: [u32; 2],
-    pub size: [u32; 2],
-    pub step: u32,
-    pub pixels: f32,
-    pub exponent: i32,
-    pub near: f32,
-    pub far: f32,
-    pub bins_per_octave: f32,
-    pub pixel_width: [f32; 2],
 }
 
 impl DemandView {
@@ -103,30 +78,12 @@ impl DemandView {
             return Err(DepthBufferError::Depth(self.depth).into());
         }
         self.check_depth()?;
-        let VisibleDemandSpace { demand: space, near, far } = *space;
         let [left, top, width, height] = self.rectangle;
-        // The histogram has no bins for negative or zero depths, which orthographic views may have.
-        let octaves = (f64::from(far) / f64::from(near)).log2();
-        let (first, bins_per_octave) = if near > 0.0 { (near, DEPTHS as f64 / octaves) } else { (f32::MAX, 0.0) };
-        Ok(DemandUniform {
-            world_from_pixel: self.world_from_pixel()?.to_cols_array_2d(),
-            view: self.view_depth(),
-            direction: space.direction.to_array(),
-            far_depth: self.depth.far(),
-            x: space.x.to_array(),
-            cell: space.cell,
-            y: space.y.to_array(),
-            shape: 1.0 / space.y.length(),
-            corner: [left, top],
-            size: [width, height],
-            step: self.step(),
-            pixels: height as f32 / PIXELS * self.frustum.height_in_picture(&self.clip_from_world),
-            exponent: ((space.texel.to_bits() >> 23) & 0xff).cast_signed(),
-            near: first,
-            far,
-            bins_per_octave: bins_per_octave as f32,
-            pixel_width: self.pixel_width(),
-        })
+        let Self { frustum: view, clip_from_world, depth, .. } = self;
+        let picture = DepthPicture { size: [width, height], clip_from_world: *clip_from_world, depth: *depth, view };
+        // The only error: the matrix has no inverse.
+        let uniform = DemandUniform::new(&picture, space, self.step(), [left, top]);
+        Ok(uniform.map_err(|_| DepthBufferError::SingularMatrix)?)
     }
 
     /// Refuses a matrix whose depth runs in the opposite direction of the convention.
@@ -141,34 +98,5 @@ impl DemandView {
         // NaN is refused as a singular matrix.
         let is_other = if self.depth == DepthConvention::Reversed { near < far } else { near > far };
         if is_other { Err(DepthBufferError::OtherDepth(self.depth)) } else { Ok(()) }
-    }
-
-    /// Returns the matrix from a pixel's column and row, and its depth minus the far plane's, to positions
-    /// relative to the eye.
-    fn world_from_pixel(&self) -> Result<Mat4, DepthBufferError> {
-        let [_, _, width, height] = self.rectangle;
-        let matrix = world_from_pixel(&self.clip_from_world, [width, height], self.depth);
-        matrix.map(|matrix| matrix.as_mat4()).filter(Mat4::is_finite).ok_or(DepthBufferError::SingularMatrix)
-    }
-
-    /// Returns the plane whose distance from a position relative to the eye is its view depth, in metres.
-    fn view_depth(&self) -> [f32; 4] {
-        // The centre of the near rectangle is the most precise point.
-        let middle = (self.frustum.corners[0] + self.frustum.corners[2]) * 0.5;
-        let forward = self.frustum.forward;
-        forward.extend(self.frustum.near - forward.dot(middle)).to_array()
-    }
-
-    /// Returns the width of a pixel on a surface that faces the eye, in metres: at view depth 0, and its
-    /// growth per metre of view depth. The pixel has the size that it would have if the frustum were
-    /// [`PIXELS`] high.
-    fn pixel_width(&self) -> [f32; 2] {
-        let [near, far] = [self.frustum.near, self.frustum.far];
-        let height = |top: usize, bottom: usize| {
-            (self.frustum.corners[top].as_dvec3() - self.frustum.corners[bottom].as_dvec3()).length()
-        };
-        let (at_near, at_far) = (height(0, 3), height(4, 7));
-        let growth = (at_far - at_near) / (f64::from(far) - f64::from(near));
-        [at_near - growth * f64::from(near), growth].map(|width| (width / f64::from(PIXELS)) as f32)
     }
 }
