@@ -24,7 +24,7 @@ pub struct ShadowfitCasterConstants {
 #[derive(Clone, Copy, Debug)]
 pub struct ShadowfitMapConstants {
     pub uv_from_world: [f32; 16],
-    /// Their dot products with a plane's normal, divided by the cosine to the light, are its changes of depth per texel.
+    /// A plane's change of depth per texel: the dot product with its normal, divided by the cosine to the light.
     pub depth_per_texel_u: [f32; 3],
     /// Added to the stored depth. Its sign moves the receiver toward the light.
     pub constant_depth: f32,
@@ -33,7 +33,6 @@ pub struct ShadowfitMapConstants {
     pub slope_depth: f32,
     pub resolution: [f32; 2],
     pub normal_offset: f32,
-    /// In texels, with the sign of `constant_depth`.
     pub receiver_plane: f32,
     pub end_depth: f32,
     /// View depth at which the blend into this map begins.
@@ -42,7 +41,6 @@ pub struct ShadowfitMapConstants {
     pub padding_0: u32,
     pub texel_offset: [f32; 2],
     pub disc: [f32; 2],
-    /// Radii of the penumbra, in texels per unit of depth.
     pub penumbra: [f32; 2],
     pub padding_1: [u32; 2],
 }
@@ -66,6 +64,13 @@ pub struct ShadowfitReceiverConstants {
     pub padding: [u32; 2],
     /// The maps in the order in which a point tries them.
     pub maps: [ShadowfitMapConstants; crate::types::SHADOWFIT_MAX_MAPS],
+}
+
+/// Block of the demand shader, a compute shader that counts the visible surfaces. One workgroup counts 32 x 32 points.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct ShadowfitDemandConstants {
+    pub words: [u32; 44],
 }
 
 /// Returns the block of the look-up for the last fit.
@@ -106,6 +111,8 @@ mod tests {
                 $(assert_eq!(offset_of!($c, $member), offset_of!($rust, $field), stringify!($member));)+
             };
         }
+        assert_eq!(size_of::<ShadowfitDemandConstants>(), size_of::<shadowfit::uniform::DemandUniform>());
+        assert_eq!(crate::types::SHADOWFIT_COUNTS, shadowfit::demand::COUNTS);
         same!(
             ShadowfitCasterConstants,
             CasterUniform,

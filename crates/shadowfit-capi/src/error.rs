@@ -10,7 +10,6 @@ use core::fmt::{self, Write};
 pub enum ShadowfitResult {
     ShadowfitOk = 0,
     ShadowfitNullPointer = 1,
-    /// The state's buffer is not aligned to 16 bytes, as memory from malloc is.
     ShadowfitMisaligned = 2,
     /// The state or the program was made for another version of the library, or a struct's `size` is wrong.
     ShadowfitOtherVersion = 3,

@@ -3,9 +3,10 @@
 use core::ffi::{CStr, c_char};
 
 use shadowfit::glam::{DVec3, Vec3};
-use shadowfit::uniform::{CasterUniform, ReceiverUniform};
+use shadowfit::uniform::{CasterUniform, DemandUniform, ReceiverUniform};
 
-use crate::constants::{ShadowfitCasterConstants, ShadowfitReceiverConstants};
+use crate::constants::{ShadowfitCasterConstants, ShadowfitDemandConstants, ShadowfitReceiverConstants};
+use crate::demand::DepthBuffer;
 use crate::error::{Failure, ShadowfitResult};
 use crate::fit::Frame;
 use crate::pointer::{self, BoxList, DepthRead, Indices, Output};
@@ -15,7 +16,7 @@ use crate::types::{
     ShadowfitFilter, ShadowfitFrame, ShadowfitMaps, ShadowfitProof, ShadowfitRect, ShadowfitTechnique, ShadowfitUpdate,
     ShadowfitView,
 };
-use crate::{bias, cache, casters, constants, demand, fit, proof, state, technique, view};
+use crate::{bias, cache, casters, constants, fit, proof, state, technique, view};
 
 /// Runs a call on a state. Stores the text of its error.
 unsafe fn call<'a>(
@@ -33,12 +34,6 @@ unsafe fn call<'a>(
         memory.state.error = failure.text;
     }
     failure.code
-}
-
-/// Returns the version of the library. Compare it with `SHADOWFIT_VERSION` if you load a shared library.
-#[unsafe(no_mangle)]
-pub extern "C" fn shadowfit_version() -> u32 {
-    SHADOWFIT_VERSION
 }
 
 /// Returns the size in bytes of a state for lists of up to `max_boxes` boxes.
@@ -199,8 +194,44 @@ pub unsafe extern "C" fn shadowfit_set_visible_depths(
                 return Ok(());
             }
             let depths = pointer::read(depths)?;
-            let (rows, view) = (DepthRead::new(&depths)?, pointer::read(depths.view)?);
-            demand::count(memory, &depths, rows, &view)
+            let rows = DepthRead::new(&depths)?;
+            DepthBuffer::new(&depths, &pointer::read(depths.view)?)?.count(memory, rows)
+        })
+    }
+}
+
+/// Writes the constant block of the demand shader for a depth buffer on the GPU: `depths->depths` is ignored, and
+/// `row_stride` is negative if its texture's rows begin at the bottom.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn shadowfit_demand_constants(
+    state: *mut ShadowfitState,
+    depths: *const ShadowfitDepths,
+    constants: *mut ShadowfitDemandConstants,
+) -> ShadowfitResult {
+    // SAFETY: as for the caller. Both structs have the same size, and any bits are words.
+    unsafe {
+        call(state, |memory| {
+            let depths = pointer::read(depths)?;
+            let block = DepthBuffer::new(&depths, &pointer::read(depths.view)?)?.uniform(memory.state)?;
+            pointer::write(constants.cast::<DemandUniform>(), block)?;
+            Ok(())
+        })
+    }
+}
+
+/// As `shadowfit_set_visible_depths`, with the SHADOWFIT_COUNTS numbers that the demand shader wrote for `depths`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn shadowfit_set_visible_counts(
+    state: *mut ShadowfitState,
+    depths: *const ShadowfitDepths,
+    counts: *const u32,
+) -> ShadowfitResult {
+    // SAFETY: as for the caller.
+    unsafe {
+        call(state, |memory| {
+            let depths = pointer::read(depths)?;
+            let counts = pointer::counts(counts)?;
+            DepthBuffer::new(&depths, &pointer::read(depths.view)?)?.set_counts(memory, counts)
         })
     }
 }
@@ -262,8 +293,7 @@ pub unsafe extern "C" fn shadowfit_casters(
     }
 }
 
-/// Says which parts of a map must be drawn again, if its texels of the last frame were kept. Call it once for each
-/// map of each frame, after the fit, and draw what it says with all static casters (`SHADOWFIT_CASTERS_ALL`).
+/// Says which parts of a kept map to draw again, with all static casters. Call it for each map after each fit.
 /// `changed` are the old and the new boxes of static casters that came, went or moved, or null.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn shadowfit_update(
@@ -348,8 +378,7 @@ pub unsafe extern "C" fn shadowfit_bias(
     }
 }
 
-/// Proves that a map of the last fit has no holes for the same frame: every receiver in view and every caster of a
-/// visible shadow is in it. For debug builds.
+/// Proves, for debug builds, that a map of the last fit holds all receivers and casters of the same frame.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn shadowfit_prove(
     state: *mut ShadowfitState,

@@ -31,7 +31,9 @@ mod technique;
 mod types;
 mod view;
 
-pub use constants::{ShadowfitCasterConstants, ShadowfitMapConstants, ShadowfitReceiverConstants};
+pub use constants::{
+    ShadowfitCasterConstants, ShadowfitDemandConstants, ShadowfitMapConstants, ShadowfitReceiverConstants,
+};
 pub use error::ShadowfitResult;
 pub use exports::*;
 pub use state::ShadowfitState;

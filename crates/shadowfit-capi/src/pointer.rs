@@ -94,6 +94,18 @@ pub(crate) unsafe fn numbers<const COUNT: usize>(pointer: *const f64) -> Result<
     Ok(unsafe { pointer.cast::<[f64; COUNT]>().read_unaligned() })
 }
 
+/// Returns the caller's counts of visible surfaces.
+pub(crate) unsafe fn counts<'a>(pointer: *const u32) -> Result<&'a Counts, Code> {
+    if pointer.is_null() {
+        return Err(Code::ShadowfitNullPointer);
+    }
+    if !pointer.is_aligned() {
+        return Err(Code::ShadowfitMisaligned);
+    }
+    // SAFETY: the caller's array has this many numbers.
+    Ok(unsafe { &*pointer.cast::<Counts>() })
+}
+
 /// Returns a position, or an error unless it is finite.
 pub(crate) fn position(position: [f64; 3]) -> Result<DVec3, Failure> {
     let position = DVec3::from_array(position);

@@ -1,12 +1,12 @@
 //! The plain data that callers pass and receive.
 #![allow(missing_docs, reason = "members whose names say all have no comment in the header")]
 
-/// Version of this interface, and the greatest numbers of a light's maps, of a frame's views, and of an update's
-/// rectangles.
+/// Version of this interface, greatest numbers of maps, views and rectangles, and length of the demand counts.
 pub const SHADOWFIT_VERSION: u32 = 1;
 pub const SHADOWFIT_MAX_MAPS: usize = 8;
 pub const SHADOWFIT_MAX_VIEWS: usize = 4;
 pub const SHADOWFIT_MAX_RECTS: usize = 24;
+pub const SHADOWFIT_COUNTS: usize = 17_152;
 
 /// Depth in clip space, from the near plane to the far plane: 0 to 1 (Direct3D, Vulkan, Metal), -1 to 1 (OpenGL,
 /// whose depth buffers store it as 0 to 1), or 1 to 0.
@@ -173,9 +173,8 @@ pub struct ShadowfitTechnique {
     pub blend: f32,
     /// Greatest distance of a texel that the filter reads, in texels.
     pub filter_radius: f32,
-    /// Name of the filter, such as "pcf_5x5". Shader files end with it.
+    /// Names as in technique files, such as "pcf_5x5" and "depth32float".
     pub filter: *const core::ffi::c_char,
-    /// Name of the format, such as "depth32float".
     pub format: *const core::ffi::c_char,
 }
 

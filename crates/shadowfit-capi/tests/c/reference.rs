@@ -108,7 +108,7 @@ fn walk() -> Result<File, Box<dyn std::error::Error>> {
     file.floats(boxes.iter().flat_map(|aabb| [aabb.min.to_array(), aabb.max.to_array()]).flatten());
     let list = Boxes { origin: ORIGIN, boxes: &boxes };
     let mut storage = vec![DVec2::ZERO; 40_000];
-    let (mut fitter, mut counts) = (FitState::new(), Box::new([0; COUNTS]));
+    let (mut fitter, mut counts) = (FitState::new(), vec![0; COUNTS].into_boxed_slice());
     let mut seen: Option<VisibleDemandSpace> = None;
     let mut kept: [Option<FittedMap>; MAX_MAPS] = [None; MAX_MAPS];
     for frame in 0..FRAMES {
@@ -122,10 +122,12 @@ fn walk() -> Result<File, Box<dyn std::error::Error>> {
             let before = self::camera(frame - 1);
             let depths = depths(&before);
             file.floats(depths.iter().copied());
-            seen = Some(count(&before, light, &technique, &depths, &mut counts)?);
+            let counts = counts.first_chunk_mut().ok_or("too few counts")?;
+            seen = Some(count(&before, light, &technique, &depths, counts)?);
         }
-        let grid = seen.map(|seen| seen.grid(&counts));
-        let histogram = seen.map(|seen| seen.histogram(&counts));
+        let known: &Counts = counts.first_chunk().ok_or("too few counts")?;
+        let grid = seen.map(|seen| seen.grid(known));
+        let histogram = seen.map(|seen| seen.histogram(known));
         let input = FitInput {
             receivers: Some(list),
             casters: Some(list),

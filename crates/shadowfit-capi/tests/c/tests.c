@@ -262,7 +262,6 @@ static void states_are_checked(void) {
     CHECK(shadowfit_state_size(SIZE_MAX / 2) == SIZE_MAX);
     CHECK(shadowfit_init(state, &size, SIZE_MAX / 2, SHADOWFIT_VERSION) == SHADOWFIT_TOO_SMALL);
     for (uint32_t result = 0; result < 12; result++) CHECK(strlen(shadowfit_result_text(result)) > 5);
-    CHECK(shadowfit_version() == SHADOWFIT_VERSION);
     free(memory);
 }
 
@@ -459,6 +458,20 @@ static void cameras_techniques_and_depths_are_checked(void) {
     CHECK_RESULT(state, shadowfit_set_visible_depths(state, &wrong), SHADOWFIT_BAD_INPUT);
     depths[4] = NAN;
     CHECK_OK(state, shadowfit_set_visible_depths(state, &good));
+    uint32_t *counts = calloc(SHADOWFIT_COUNTS, sizeof *counts);
+    ShadowfitDemandConstants block, turned;
+    wrong = good;
+    wrong.depths = NULL;
+    CHECK_OK(state, shadowfit_demand_constants(state, &wrong, &block));
+    wrong.row_stride = -1;
+    CHECK_OK(state, shadowfit_demand_constants(state, &wrong, &turned));
+    CHECK(memcmp(&block, &turned, sizeof block) != 0);
+    CHECK_RESULT(state, shadowfit_demand_constants(state, &wrong, NULL), SHADOWFIT_NULL_POINTER);
+    CHECK_RESULT(state, shadowfit_demand_constants(state, NULL, &block), SHADOWFIT_NULL_POINTER);
+    CHECK_OK(state, shadowfit_set_visible_counts(state, &wrong, counts));
+    CHECK_RESULT(state, shadowfit_set_visible_counts(state, &wrong, NULL), SHADOWFIT_NULL_POINTER);
+    CHECK_RESULT(state, shadowfit_set_visible_counts(state, NULL, counts), SHADOWFIT_NULL_POINTER);
+    free(counts);
     free(state);
 }
 
