@@ -94,3 +94,50 @@ fn rects(map: &FittedMap, changed: Option<BoxList>) -> [Option<TexelRect>; CHANG
     }
     rects
 }
+
+#[cfg(test)]
+mod tests {
+    use shadowfit::glam::{DVec2, DVec3, Vec3};
+    use shadowfit::{Aabb, FitInput, FitState, PerspectiveCamera, Scratch, Technique};
+
+    use super::*;
+
+    #[test]
+    fn the_rectangles_of_an_update_hold_the_shadows_of_all_changed_casters() {
+        let camera = PerspectiveCamera {
+            eye: DVec3::new(3.0, 1.7, 20.0),
+            forward: Vec3::NEG_Z,
+            up: Vec3::Y,
+            fov_y: 0.9,
+            aspect: 1.6,
+            near: 0.1,
+            far: 150.0,
+        };
+        let views = [camera.frustum().expect("a camera")];
+        let mut storage = [DVec2::ZERO; Scratch::required(0, 1)];
+        let input = FitInput::new(&views, Vec3::new(0.4, -0.8, 0.3));
+        let mut scratch = Scratch::new(&mut storage);
+        let maps = FitState::new().fit(&input, &Technique::default(), &mut scratch).expect("maps");
+        let boxes: Vec<Aabb> = (0..40_u8)
+            .map(|index| {
+                let at = Vec3::new(f32::from(index % 8) * 9.0 - 30.0, 0.0, f32::from(index / 8) * -17.0 + 10.0);
+                Aabb::new(at, at + Vec3::new(1.0, f32::from(index % 5), 2.0))
+            })
+            .collect();
+        let numbers: Vec<[f32; 3]> = boxes.iter().flat_map(|aabb| [aabb.min.into(), aabb.max.into()]).collect();
+        for count in [1, 3, 5, boxes.len()] {
+            let list =
+                crate::types::ShadowfitBoxes { min_max: numbers.as_ptr().cast(), count, stride: 0, origin: [0.0; 3] };
+            // SAFETY: the list has at least this many boxes.
+            let list = unsafe { BoxList::new(&list) }.map_err(|failure| failure.code).expect("a list");
+            for map in maps.iter() {
+                let rects = rects(map, list);
+                for aabb in &boxes[..count] {
+                    let texels = TexelRect::of_box(&map.projection, aabb, DVec3::ZERO);
+                    let holds = |rect: &TexelRect| rect.union(texels) == *rect;
+                    assert!(texels.is_empty() || rects.iter().flatten().any(holds), "{texels:?} in {rects:?}");
+                }
+            }
+        }
+    }
+}

@@ -196,6 +196,8 @@ fn wrapped(text: &mut String, label: &str, value: &str) {
 
 #[cfg(test)]
 mod tests {
+    use alloc::vec;
+
     use super::*;
 
     fn report(states: &[CheckState]) -> CheckReport {

@@ -161,6 +161,7 @@ pub(crate) fn test(tier: Tier, names: &[String], gpu: bool) -> Result<()> {
         report.run("lints and tests of bevy-shadowfit", bevy::check_and_test);
         report.run("tests of the page", || process::run(process::with_tools().args(["web", "--test", "--long"])));
         report.run("tests of the npm package", || process::run(process::with_tools().args(["npm", "--test"])));
+        report.run("tests of the C library", || process::run(process::with_tools().args(["capi", "--test"])));
     }
     suite.say_left_out();
     report.finish()

@@ -113,7 +113,10 @@ fn setting_a_row_that_does_not_exist_is_an_error_that_names_what_to_set_first() 
         let cascades = with(&[SLICES]);
         let mut settings = cascades;
         let error = set_from_str(&mut settings, id, value).expect_err(id);
-        assert!(matches!(error, params::ParameterError::NotPresent { .. }), "{error:?}");
+        assert!(
+            matches!(error, params::ParameterError::Rejected { reason: params::RejectionReason::NotPresent(_), .. }),
+            "{error:?}"
+        );
         assert!(error.to_string().contains(id) && error.to_string().contains(first), "{error}");
         assert_eq!(settings, cascades);
         set_from_str(&mut settings, first, option).expect(first);
