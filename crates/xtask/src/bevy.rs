@@ -3,6 +3,7 @@
 //! clippy` and `cargo doc` would each need another one: clippy compiles the package in place of rustc, and
 //! the documentation is written when its tests run.
 
+use std::path::Path;
 use std::process::Command;
 
 use anyhow::Result;
@@ -73,12 +74,19 @@ impl Rust {
         command
     }
 
-    /// Returns a cargo command with this Rust, run in the package's folder.
+    /// Returns a cargo command with this Rust and the versions of the lock file, run in the package's folder.
     fn cargo(&self, subcommand: &str) -> Command {
+        let mut command = self.cargo_in(&process::root().join("crates/bevy-shadowfit"), subcommand);
+        command.arg("--locked");
+        command
+    }
+
+    /// Returns a cargo command with this Rust, run in a folder. All such commands share compiled code.
+    pub(crate) fn cargo_in(&self, folder: &Path, subcommand: &str) -> Command {
         let mut command = self.plain_cargo(subcommand);
-        command.current_dir(process::root().join("crates/bevy-shadowfit"));
+        command.current_dir(folder);
         command.env("CARGO_TARGET_DIR", process::target_folder().join("bevy"));
-        command.args(["--locked", "--ignore-rust-version"]);
+        command.arg("--ignore-rust-version");
         // Tests need neither speed nor a debugger, and Bevy builds in half the time.
         for setting in ["opt-level=0", "package.'*'.opt-level=0", "debug=false"] {
             command.args(["--config", &format!("profile.dev.{setting}")]);

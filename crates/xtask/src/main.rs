@@ -23,6 +23,8 @@ mod maths;
 #[cfg(feature = "tools")]
 mod npm;
 mod process;
+#[cfg(feature = "tools")]
+mod release;
 mod run;
 mod rustdoc;
 mod setup;
@@ -135,6 +137,21 @@ enum Task {
         #[arg(long, conflicts_with = "archive")]
         test: bool,
     },
+    /// Prepare a release: check it, and print the commands that publish it.
+    Release {
+        /// Checks versions, changelog, tag, packages, features and lowest versions. Publishes nothing.
+        #[arg(long, required_unless_present = "owner")]
+        dry_run: bool,
+        /// Neither builds bevy-shadowfit from its package nor runs `cargo xtask matrix`.
+        #[arg(long, requires = "dry_run")]
+        quick: bool,
+        /// Writes the owner of the repository into all addresses.
+        #[arg(long, value_name = "NAME", conflicts_with = "dry_run")]
+        owner: Option<String>,
+    },
+    /// Check the packages with many combinations of features, with the lowest versions of their dependencies, and
+    /// against the last release.
+    Matrix,
     /// Rewrite the golden images of the tests; look at the diff before committing it.
     Golden,
 }
@@ -175,12 +192,20 @@ fn main() -> ExitCode {
         Task::Capi { archive, .. } => {
             capi::archive(&archive.unwrap_or_else(|| process::root().join("out/c"))).map(|_| ())
         }
+        #[cfg(feature = "tools")]
+        Task::Release { owner: Some(owner), .. } => release::set_owner(&owner),
+        #[cfg(feature = "tools")]
+        Task::Release { quick, .. } => release::dry_run(quick),
+        #[cfg(feature = "tools")]
+        Task::Matrix => release::matrix(),
         #[cfg(not(feature = "tools"))]
-        Task::Npm { .. }
+        Task::Bundle { .. }
         | Task::Capi { .. }
-        | Task::Bundle { .. }
-        | Task::Generate
         | Task::Gallery { .. }
+        | Task::Generate
+        | Task::Matrix
+        | Task::Npm { .. }
+        | Task::Release { .. }
         | Task::Web { .. } => process::run(process::with_tools().args(std::env::args_os().skip(1))),
     };
     match result {
@@ -227,7 +252,10 @@ mod tests {
 
     #[test]
     fn every_task_but_the_viewer_has_help_of_its_own() {
-        for task in ["test", "bundle", "bevy", "generate", "ci", "gallery", "bench", "figures", "web", "golden"] {
+        for task in [
+            "test", "bundle", "bevy", "generate", "ci", "gallery", "bench", "figures", "web", "release", "matrix",
+            "golden",
+        ] {
             let asked = Cli::try_parse_from(["xtask", task, "--help"]).err().map(|error| error.kind());
             assert_eq!(asked, Some(clap::error::ErrorKind::DisplayHelp), "{task}");
         }

@@ -213,7 +213,7 @@ fn copy_folder(from: &Path, to: &Path) -> Result<()> {
 }
 
 /// Returns the sections of a manifest whose header is kept.
-fn sections(manifest: &str, keep: impl Fn(&str) -> bool) -> String {
+pub(crate) fn sections(manifest: &str, keep: impl Fn(&str) -> bool) -> String {
     let mut is_kept = false;
     let mut kept = String::new();
     for line in manifest.lines() {
