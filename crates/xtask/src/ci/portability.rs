@@ -158,7 +158,7 @@ fn names(toolchain: &str, version: &str) -> bool {
 }
 
 /// Returns the lowest version of a dependency from its range in the workspace's manifest.
-fn oldest_version<'a>(manifest: &'a str, dependency: &str) -> Option<&'a str> {
+pub(crate) fn oldest_version<'a>(manifest: &'a str, dependency: &str) -> Option<&'a str> {
     let line = manifest.lines().find(|line| line.split('=').next().is_some_and(|name| name.trim() == dependency))?;
     let range = &line[line.find(">=")? + 2..];
     range.split([',', '"']).next().map(str::trim)
