@@ -1,7 +1,7 @@
 //! `cargo xtask generate`: writes the parts of files that repeat other files, so that both stay equal.
 //!
 //! These are the first examples of READMEs and crate docs and, with the feature `tools`, the pictures of
-//! docs/MATHS.md.
+//! docs/MATHS.md and the shaders of engines that do not use wgpu.
 
 use std::fs;
 
@@ -9,7 +9,7 @@ use anyhow::{Context, Result, ensure};
 
 use crate::process;
 #[cfg(feature = "tools")]
-use crate::{capi, maths};
+use crate::{capi, maths, shaders};
 
 /// Lines around the first example of a Markdown page, and of a crate's docs.
 const PAGE: [&str; 2] = ["```rust\n", "```"];
@@ -61,6 +61,7 @@ fn stale() -> Result<Vec<(String, String)>> {
     #[cfg(feature = "tools")]
     {
         files.extend(maths::pictures()?);
+        files.extend(shaders::files()?);
         files.push((capi::HEADER.to_owned(), capi::header()?));
     }
     files.retain(|(name, text)| read(name).ok().as_ref() != Some(text));

@@ -40,6 +40,10 @@ pub(crate) enum Part {
     Npm,
     /// `CMake`, which builds a program against the C library.
     Cmake,
+    /// glslang, which compiles the shaders of engines without wgpu.
+    Glslang,
+    /// EGL, with Mesa's software driver for OpenGL.
+    Egl,
     /// `pkg-config` and libudev's development files, for building the gamepad feature.
     Libudev,
 }
@@ -106,6 +110,8 @@ impl Machine {
             Part::Node => in_path("node"),
             Part::Npm => in_path("npm"),
             Part::Cmake => in_path("cmake"),
+            Part::Glslang => in_path("glslangValidator"),
+            Part::Egl => libraries.has("libEGL.so.1"),
             Part::Libudev => process::succeeds(Command::new("pkg-config").args(["--exists", "libudev"])),
         };
         Self { parts: all_parts().filter(is_there).collect(), display }
@@ -156,6 +162,8 @@ fn all_parts() -> impl Iterator<Item = Part> {
         Part::Node,
         Part::Npm,
         Part::Cmake,
+        Part::Glslang,
+        Part::Egl,
         Part::Libudev,
     ]
     .into_iter()
@@ -285,8 +293,8 @@ mod tests {
     #[test]
     fn a_window_test_needs_every_tool_and_library() {
         assert!(Machine::complete(Display::None).can_test_window());
-        let others = [Part::SoftwareDriver, Part::SwiftShader, Part::Libudev, Part::Chromium, Part::Node, Part::Npm];
-        for part in all_parts().filter(|part| !others.contains(part)) {
+        let window_tools = [Part::VulkanLoader, Part::VulkanDriver, Part::Xvfb, Part::Xdotool, Part::Import];
+        for part in window_tools.into_iter().chain(window_libraries()) {
             let mut machine = Machine::complete(Display::None);
             machine.parts.remove(&part);
             assert!(!machine.can_test_window(), "{part:?}");

@@ -28,6 +28,8 @@ mod release;
 mod run;
 mod rustdoc;
 mod setup;
+#[cfg(feature = "tools")]
+mod shaders;
 mod source;
 mod test;
 #[cfg(feature = "tools")]
@@ -81,7 +83,7 @@ enum Task {
     },
     /// Lint, document and test the package for Bevy.
     Bevy,
-    /// Write the generated parts of the documents: examples, and the drawings of docs/MATHS.md.
+    /// Write the generated files: examples in documents, drawings of docs/MATHS.md, and shaders for engines without wgpu.
     Generate,
     /// Run every check before the tests: format, lints, docs, MSRV, `no_std`, dependencies, examples.
     Ci,

@@ -93,6 +93,7 @@ fn missing_packages(purpose: Purpose, machine: &Machine) -> Vec<&'static str> {
     }
     if testing {
         needs.extend([(Part::Xvfb, "xvfb"), (Part::Xdotool, "xdotool"), (Part::Import, "imagemagick")]);
+        needs.extend([(Part::Glslang, "glslang-tools"), (Part::Egl, "libegl1"), (Part::Egl, "libgl1-mesa-dri")]);
     }
     if matches!(purpose, Purpose::TestAll | Purpose::Page) {
         needs.extend(PAGE_TOOLS);
@@ -184,7 +185,15 @@ mod tests {
     #[test]
     fn a_bare_machine_gets_the_window_test_tools_to_test() {
         let packages = missing_packages(Purpose::Test, &Machine::default());
-        for package in ["libvulkan1", "mesa-vulkan-drivers", "libxkbcommon-x11-0", "xvfb", "xdotool", "imagemagick"] {
+        for package in [
+            "libvulkan1",
+            "mesa-vulkan-drivers",
+            "libxkbcommon-x11-0",
+            "xvfb",
+            "imagemagick",
+            "glslang-tools",
+            "libegl1",
+        ] {
             assert!(packages.contains(&package), "{package} is not in {packages:?}");
         }
         assert!(!packages.contains(&"chromium"));

@@ -396,6 +396,12 @@ fn left_out(machine: &Machine, tier: Tier) -> Vec<LeftOut> {
     if tier != Tier::Quick && !machine.can_test_window() {
         left_out.insert("window::", "no Xvfb, xdotool, ImageMagick's import, X11 libraries or Vulkan driver here");
     }
+    if tier != Tier::Quick && !machine.has(Part::Glslang) {
+        left_out.insert("glslang::", "no glslangValidator here");
+    }
+    if tier != Tier::Quick && !machine.has(Part::Egl) {
+        left_out.insert("opengl_gpu", "no libEGL.so.1 here");
+    }
     left_out.into_iter().map(|(name_part, reason)| LeftOut { name_part, reason: reason.to_owned() }).collect()
 }
 
