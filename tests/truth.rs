@@ -4,5 +4,6 @@
 mod agreement_gpu;
 mod artefacts_gpu;
 mod large_grounds_gpu;
+mod opengl_gpu;
 mod shapes;
 mod traced_gpu;
