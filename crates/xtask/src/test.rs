@@ -33,8 +33,8 @@ const SHARING: [&str; 3] = ["gpu", "golden", "wgsl::"];
 /// Part of the paths of tests that need their own process.
 const OWN_PROCESS: &str = "own_process";
 
-/// The example program that tests start.
-const VIEWER: &str = "viewer";
+/// The example programs that tests start.
+const STARTED: [&str; 2] = ["viewer", "opengl"];
 
 /// Packages of the quick tier. They do not link egui or winit.
 const QUICK_PACKAGES: [&str; 9] = [
@@ -208,7 +208,7 @@ impl Suite {
         if process::lints_tests() {
             build.args(["--examples", "--benches"]);
         } else {
-            build.args(["--example", VIEWER]);
+            build.args(STARTED.iter().flat_map(|example| ["--example", example]));
         }
         process::run(&mut build)
     }
