@@ -300,10 +300,10 @@ int2 shadowfit_naga_f2i32(float2 value) {
 
 float shadowfit_stored_texel(float2 texel, shadowfit_Projected projected)
 {
-    float2 ended = ((texel >= projected.size) ? (texel - projected.size) : texel);
-    float2 stored = ((texel < (0.0).xx) ? (ended + projected.size) : ended);
-    const float _e15 = shadowfit_load(projected.layer, shadowfit_naga_f2i32(stored));
-    return _e15;
+    float2 ended = (texel - (projected.size * float2((texel >= projected.size))));
+    float2 stored = (ended + (projected.size * float2((texel < (0.0).xx))));
+    const float _e17 = shadowfit_load(projected.layer, shadowfit_naga_f2i32(stored));
+    return _e17;
 }
 #endif
 

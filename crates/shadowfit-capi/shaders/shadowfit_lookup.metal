@@ -285,10 +285,10 @@ float shadowfit_stored_texel(
     shadowfit_Projected projected,
     metal::depth2d_array<float, metal::access::sample> shadowfit_texture
 ) {
-    metal::float2 ended = metal::select(texel, texel - projected.size, texel >= projected.size);
-    metal::float2 stored = metal::select(ended, ended + projected.size, texel < metal::float2(0.0));
-    float _e15 = shadowfit_load(projected.layer, shadowfit_naga_f2i32(stored), shadowfit_texture);
-    return _e15;
+    metal::float2 ended = texel - (projected.size * static_cast<metal::float2>(texel >= projected.size));
+    metal::float2 stored = ended + (projected.size * static_cast<metal::float2>(texel < metal::float2(0.0)));
+    float _e17 = shadowfit_load(projected.layer, shadowfit_naga_f2i32(stored), shadowfit_texture);
+    return _e17;
 }
 #endif
 
