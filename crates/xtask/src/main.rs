@@ -12,6 +12,7 @@ mod capi;
 mod ci;
 #[cfg(test)]
 mod docs;
+mod dxc;
 mod figures;
 #[cfg(feature = "tools")]
 mod gallery;

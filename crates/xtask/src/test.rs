@@ -9,6 +9,7 @@
 use std::collections::BTreeMap;
 use std::ffi::OsString;
 use std::iter;
+use std::path::PathBuf;
 use std::process::Command;
 use std::time::{Duration, Instant};
 
@@ -16,6 +17,7 @@ use anyhow::{Context, Result, bail, ensure};
 
 use crate::bevy;
 use crate::ci::portability;
+use crate::dxc;
 use crate::machine::{self, Machine, Part};
 use crate::process;
 use crate::rustdoc;
@@ -132,7 +134,7 @@ pub(crate) fn test(tier: Tier, names: &[String], gpu: bool) -> Result<()> {
     if setup::gpu_is_required() && !left_out.is_empty() {
         bail!("{} is set, and {}", setup::REQUIRE_GPU, left_out[0].reason);
     }
-    let mut suite = Suite { tier, features: setup::features(&machine), left_out, adapter: None };
+    let mut suite = Suite { tier, features: setup::features(&machine), left_out, adapter: None, dxc: None };
     if gpu {
         suite.draw_on(suite.hardware_adapter()?);
     } else if let Some(name) = std::env::var_os(ADAPTER).filter(|name| !name.is_empty() && machine.can_render()) {
@@ -142,6 +144,7 @@ pub(crate) fn test(tier: Tier, names: &[String], gpu: bool) -> Result<()> {
     }
     if tier != Tier::Quick {
         suite.build_examples()?;
+        suite.find_dxc();
     }
     if !names.is_empty() {
         suite.say_left_out();
@@ -176,8 +179,13 @@ pub(crate) fn golden() -> Result<()> {
     if !machine.has(Part::SoftwareDriver) {
         bail!("the golden images are rendered on Mesa's software driver, which is missing here");
     }
-    let suite =
-        Suite { tier: Tier::Standard, features: setup::features(&machine), left_out: Vec::new(), adapter: None };
+    let suite = Suite {
+        tier: Tier::Standard,
+        features: setup::features(&machine),
+        left_out: Vec::new(),
+        adapter: None,
+        dxc: None,
+    };
     process::run(suite.in_one_process(&["golden"]).env(UPDATE_GOLDENS, "1"))?;
     println!("look at the new pictures before committing them: git status, git diff --stat");
     Ok(())
@@ -190,6 +198,8 @@ struct Suite {
     left_out: Vec<LeftOut>,
     /// Name of the adapter that the tests draw on, unless the environment chooses it.
     adapter: Option<String>,
+    /// Path of Microsoft's shader compiler.
+    dxc: Option<PathBuf>,
 }
 
 impl Suite {
@@ -219,6 +229,22 @@ impl Suite {
         process::run(process::cargo("build").args(self.packages()).args(["--example", "adapters"]))?;
         let program = format!("debug/examples/adapters{}", std::env::consts::EXE_SUFFIX);
         process::printed_by(Command::new(process::target_folder().join(program)).args(arguments))
+    }
+
+    /// Finds Microsoft's shader compiler. Fetches it where a GPU is required. Without it, its tests are excluded.
+    fn find_dxc(&mut self) {
+        self.dxc = if setup::gpu_is_required() {
+            dxc::fetch().unwrap_or_else(|error| {
+                eprintln!("{error:#}; going on without");
+                None
+            })
+        } else {
+            dxc::fetched()
+        };
+        if self.dxc.is_none() {
+            let reason = format!("Microsoft's shader compiler is missing; {}=1 fetches it", setup::REQUIRE_GPU);
+            self.left_out.push(LeftOut { name_part: "dxc::", reason });
+        }
     }
 
     /// Makes the tests draw on an adapter, and excludes the tests that need the software driver.
@@ -346,6 +372,9 @@ impl Suite {
         if let Some(name) = &self.adapter {
             command.env(ADAPTER, name);
         }
+        if let Some(library) = &self.dxc {
+            command.env(dxc::LIBRARY, library);
+        }
         if self.tier == Tier::All {
             for (variable, value) in LONG_RUNS {
                 if std::env::var_os(variable).is_none() {
@@ -411,7 +440,7 @@ mod tests {
     use crate::machine::Display;
 
     fn suite(machine: &Machine, tier: Tier) -> Suite {
-        Suite { tier, features: &[], left_out: left_out(machine, tier), adapter: None }
+        Suite { tier, features: &[], left_out: left_out(machine, tier), adapter: None, dxc: None }
     }
 
     #[test]

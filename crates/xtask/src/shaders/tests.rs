@@ -1,11 +1,33 @@
 //! Tests of the committed shaders: a compiler accepts every variant, and the constant blocks have the layout of the
 //! Rust structs.
 
+mod dxc;
 mod glslang;
 
 use shadowfit::PRESETS;
 
 use super::*;
+
+/// Entry points that call all functions.
+const HLSL_LOOK_UP: &str = "
+float4 entry(float4 at : SV_Position) : SV_Target {
+    float3 p = at.xyz;
+    return float4(
+        shadowfit_factor_at(p, p, p.xy), shadowfit_factor(p, p), shadowfit_view_depth(p), shadowfit_map_index(p));
+}
+";
+const HLSL_CASTER: &str = "
+float4 entry(float3 position : POSITION) : SV_Position {
+    return shadowfit_caster_position(position) * shadowfit_clamped_depth(shadowfit_caster_depth(position));
+}
+";
+
+/// Returns the settings of each alternative of the look-up.
+fn settings(language: Language) -> Vec<String> {
+    let filters = filters(language).map(|(name, ..)| format!("#define SHADOWFIT_FILTER {name}\n"));
+    let maps = MAPS.map(|maps| format!("#define SHADOWFIT_MAPS {maps}\n"));
+    filters.chain(maps).chain(["#define SHADOWFIT_BY_VIEW_DEPTH 1\n".to_owned()]).collect()
+}
 
 /// Returns the text of a committed file.
 fn committed(name: &str) -> String {

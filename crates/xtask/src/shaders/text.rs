@@ -266,7 +266,7 @@ fn head(language: Language, name: &str, purpose: &str) -> String {
     )
 }
 
-/// Returns a list of functions, with their declarations as the language has them.
+/// Returns a list of functions, with their declarations in the language.
 fn functions(functions: &[(&str, &str)], items: &[Item]) -> String {
     let mut text = String::new();
     for (name, result) in functions {

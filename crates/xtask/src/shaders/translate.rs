@@ -1,7 +1,7 @@
 //! Translates WGSL into other shading languages with naga, and makes the names of the result stable.
 //!
 //! naga numbers repeated names through a whole module (`position`, `position_1`, ...). A function's text would then
-//! depend on the functions before it, so each function's numbers are removed or begin anew.
+//! depend on the functions before it, so numbers are removed, or counted in each function alone.
 
 use std::collections::{BTreeMap, BTreeSet};
 

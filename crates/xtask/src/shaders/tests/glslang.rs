@@ -19,24 +19,12 @@ void main() {
     color = vec4(shadowfit_factor_at(p, p, p.xy), shadowfit_factor(p, p), shadowfit_view_depth(p), shadowfit_map_index(p));
 }
 ";
-const HLSL_LOOK_UP: &str = "
-float4 entry(float4 at : SV_Position) : SV_Target {
-    float3 p = at.xyz;
-    return float4(
-        shadowfit_factor_at(p, p, p.xy), shadowfit_factor(p, p), shadowfit_view_depth(p), shadowfit_map_index(p));
-}
-";
 const GLSL_CASTER: &str = "
 in vec3 position;
 out float depth;
 void main() {
     gl_Position = shadowfit_caster_position(position) + shadowfit_caster_position_gl(position);
     depth = shadowfit_clamped_depth(shadowfit_caster_depth(position));
-}
-";
-const HLSL_CASTER: &str = "
-float4 entry(float3 position : POSITION) : SV_Position {
-    return shadowfit_caster_position(position) * shadowfit_clamped_depth(shadowfit_caster_depth(position));
 }
 ";
 
@@ -66,13 +54,6 @@ fn hlsl(entry: &str) -> Vec<&str> {
         "-e",
         entry,
     ]
-}
-
-/// Returns the settings of each alternative of the look-up.
-fn settings(language: Language) -> Vec<String> {
-    let filters = filters(language).map(|(name, ..)| format!("#define SHADOWFIT_FILTER {name}\n"));
-    let maps = MAPS.map(|maps| format!("#define SHADOWFIT_MAPS {maps}\n"));
-    filters.chain(maps).chain(["#define SHADOWFIT_BY_VIEW_DEPTH 1\n".to_owned()]).collect()
 }
 
 #[test]
