@@ -3,15 +3,15 @@
 //
 // position: world space, relative to the origin of the constants, metres.
 //
-// metal::float4 shadowfit_caster_position(metal::float3 position, constant shadowfit_Caster& shadowfit_caster)
+// float4 shadowfit_caster_position(float3 position, constants)
 //     the clip position in the map, for vertex shaders
-// float shadowfit_caster_depth(metal::float3 position, constant shadowfit_Caster& shadowfit_caster)
+// float shadowfit_caster_depth(float3 position, constants)
 //     the depth to interpolate, for vertex shaders without depth clamp
 // float shadowfit_clamped_depth(float depth)
 //     the depth to write, for fragment shaders without depth clamp
 //
 // Constants: ShadowfitCasterConstants of shadowfit.h, struct shadowfit_Caster below.
-// The argument after these comes from the engine's entry point: the constants as a buffer.
+// `constants` is a constant buffer of the engine's entry point.
 
 #ifndef SHADOWFIT_CASTER_METAL
 #define SHADOWFIT_CASTER_METAL

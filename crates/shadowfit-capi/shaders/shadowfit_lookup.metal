@@ -4,17 +4,17 @@
 // position: world space, relative to the origin of the constants, metres. normal: unit, geometric.
 // pixel: xy of [[position]].
 //
-// float shadowfit_factor_at(metal::float3 position, metal::float3 normal, metal::float2 pixel, constant shadowfit_Receiver& shadowfit_receiver, metal::depth2d_array<float, metal::access::sample> shadowfit_texture, metal::sampler shadowfit_sampler)
+// float shadowfit_factor_at(float3 position, float3 normal, float2 pixel, constants, texture, sampler)
 //     the share of the light that reaches a point: 1 lit, 0 in shadow
-// float shadowfit_factor(metal::float3 position, metal::float3 normal, constant shadowfit_Receiver& shadowfit_receiver, metal::depth2d_array<float, metal::access::sample> shadowfit_texture, metal::sampler shadowfit_sampler)
+// float shadowfit_factor(float3 position, float3 normal, constants, texture, sampler)
 //     the same without rotating the discs of Vogel filters
-// int shadowfit_map_index(metal::float3 position, constant shadowfit_Receiver& shadowfit_receiver)
+// int shadowfit_map_index(float3 position, constants)
 //     the layer of the map that a point reads, for debug colours; -1 for none
-// float shadowfit_view_depth(metal::float3 position, constant shadowfit_Receiver& shadowfit_receiver)
+// float shadowfit_view_depth(float3 position, constants)
 //     the view depth of a point, in metres
 //
 // Constants: ShadowfitReceiverConstants of shadowfit.h, struct shadowfit_Receiver below.
-// Arguments after these come from the engine's entry point: the constants as a buffer, the texture, the sampler.
+// From the engine's entry point: `constants`, a constant buffer; `texture`, a depth2d_array<float>; `sampler`.
 //
 // The sampler compares with "less or equal", or "greater or equal" for reversed depth. It filters linearly
 // (SHADOWFIT_POINT: nearest), repeats, and the texture has one mip level.

@@ -21,6 +21,17 @@ const CASTER: [(&str, &str); 3] = [
     ("shadowfit_clamped_depth", "the depth to write, for fragment shaders without depth clamp"),
 ];
 
+/// Replacements that make the listed declarations shorter. Metal's functions have their resources as arguments.
+const SHORTER: [(&str, &str); 7] = [
+    ("( ", "("),
+    (" )", ")"),
+    ("constant shadowfit_Receiver& shadowfit_receiver", "constants"),
+    ("constant shadowfit_Caster& shadowfit_caster", "constants"),
+    ("metal::depth2d_array<float, metal::access::sample> shadowfit_texture", "texture"),
+    ("metal::sampler shadowfit_sampler", "sampler"),
+    ("metal::", ""),
+];
+
 /// Returns the first lines of a look-up.
 pub(super) fn look_up_head(language: Language, items: &[Item]) -> String {
     let points = match language {
@@ -74,7 +85,7 @@ const HLSL_LOOK_UP: &str = "\
 ";
 
 const MSL_LOOK_UP: &str = "\
-// Arguments after these come from the engine's entry point: the constants as a buffer, the texture, the sampler.
+// From the engine's entry point: `constants`, a constant buffer; `texture`, a depth2d_array<float>; `sampler`.
 ";
 
 /// Returns the declarations of the resources of a look-up.
@@ -131,9 +142,7 @@ pub(super) fn caster_head(language: Language, items: &[Item]) -> String {
         Language::Hlsl => {
             "// Constant buffer: SHADOWFIT_CASTER_REGISTER (b0), which may name a space as well, such as `b0, space1`.\n"
         }
-        Language::Msl => {
-            "// The argument after these comes from the engine's entry point: the constants as a buffer.\n"
-        }
+        Language::Msl => "// `constants` is a constant buffer of the engine's entry point.\n",
     };
     guard(&mut text, language, "CASTER");
     text + preamble(language)
@@ -273,8 +282,11 @@ fn functions(functions: &[(&str, &str)], items: &[Item]) -> String {
         let Some(item) = items.iter().find(|item| item.name == *name) else { continue };
         let declaration = item.text.split(['{', '\n']).next().filter(|line| line.contains(')'));
         let declaration = declaration.unwrap_or_else(|| item.text.split(" {").next().unwrap_or_default());
-        let declaration = declaration.split_whitespace().collect::<Vec<_>>().join(" ");
-        let _ = writeln!(text, "// {}\n//     {result}", declaration.replace("( ", "(").replace(" )", ")"));
+        let mut declaration = declaration.split_whitespace().collect::<Vec<_>>().join(" ");
+        for (long, short) in SHORTER {
+            declaration = declaration.replace(long, short);
+        }
+        let _ = writeln!(text, "// {declaration}\n//     {result}");
     }
     text
 }

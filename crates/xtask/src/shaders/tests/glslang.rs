@@ -79,6 +79,24 @@ fn casters_and_demand_compile() {
     compiled("comp", &hlsl("count_demand"), &committed("shadowfit_demand.hlsl"));
 }
 
+/// Vulkan requires layouts with sets and bindings.
+#[test]
+fn layouts_and_registers_are_settings() {
+    let layouts = "
+        #define SHADOWFIT_RECEIVER_LAYOUT std140, set = 1, binding = 2
+        #define SHADOWFIT_TEXTURE_LAYOUT layout(set = 1, binding = 3)
+        #define SHADOWFIT_CASTER_LAYOUT std140, set = 0, binding = 4\n";
+    let vulkan = ["-V", "-o", "/dev/null", "--auto-map-locations"];
+    let glsl = |file: &str, entry: &str| [VERSIONS[0], layouts, &committed(file), entry].concat();
+    compiled("frag", &vulkan, &glsl("shadowfit_lookup.glsl", GLSL_LOOK_UP));
+    compiled("vert", &vulkan, &glsl("shadowfit_caster.glsl", GLSL_CASTER));
+    let registers = "
+        #define SHADOWFIT_RECEIVER_REGISTER b2, space1
+        #define SHADOWFIT_TEXTURE_REGISTER t3, space1
+        #define SHADOWFIT_SAMPLER_REGISTER s4, space1\n";
+    compiled("frag", &hlsl("entry"), &[registers, &committed("shadowfit_lookup.hlsl"), HLSL_LOOK_UP].concat());
+}
+
 #[test]
 fn wrong_settings_do_not_compile() {
     let source =
