@@ -11,10 +11,12 @@
 mod context;
 #[path = "opengl/courtyard.rs"]
 mod courtyard;
+#[path = "opengl/demand.rs"]
+mod demand;
 #[path = "opengl/rays.rs"]
 mod rays;
 
-use anyhow::{Context as _, Result, anyhow, bail};
+use anyhow::{Context as _, Result, bail, ensure};
 use bytemuck::{Pod, cast_slice};
 use glow::{HasContext, PixelPackData};
 use shadowfit::glam::{Mat4, Vec3};
@@ -84,6 +86,12 @@ fn main() -> Result<()> {
     // SAFETY: The context is current, and all objects are made from it.
     let factors = unsafe { draw(&context.gl, api, &courtyard, &technique, &maps)? };
     let version = context.version();
+    // ES 3.0 has no compute shaders.
+    if api == Api::Core {
+        // SAFETY: As above. The target of the picture is bound.
+        let moved = unsafe { demand::count(&context.gl, &courtyard, &technique, SIZE)? };
+        println!("{moved:.3} % of the visible points are counted in other cells than by the CPU");
+    }
     println!("{version}: {:.3} % of the pixels that face the sun are wrong", rays::wrong(&courtyard, SIZE, &factors));
     Ok(())
 }
@@ -193,34 +201,47 @@ unsafe fn program(gl: &glow::Context, api: Api, sources: [&str; 2]) -> Result<gl
     unsafe {
         let program = gl.create_program().map_err(anyhow::Error::msg)?;
         for (stage, source) in [glow::VERTEX_SHADER, glow::FRAGMENT_SHADER].into_iter().zip(sources) {
-            let shader = gl.create_shader(stage).map_err(anyhow::Error::msg)?;
-            gl.shader_source(shader, &[api.glsl_version(), source].concat());
-            gl.compile_shader(shader);
-            if !gl.get_shader_compile_status(shader) {
-                bail!("a shader does not compile: {}", gl.get_shader_info_log(shader));
-            }
-            gl.attach_shader(program, shader);
+            attach(gl, program, stage, &[api.glsl_version(), source].concat())?;
         }
-        gl.link_program(program);
-        if !gl.get_program_link_status(program) {
-            return Err(anyhow!("a program does not link: {}", gl.get_program_info_log(program)));
-        }
-        gl.use_program(Some(program));
+        link(gl, program)?;
         Ok(program)
     }
 }
 
-/// Creates and binds the target of the picture: a byte per channel, and depth.
+/// Compiles a shader and attaches it to a program.
+unsafe fn attach(gl: &glow::Context, program: glow::Program, stage: u32, source: &str) -> Result<()> {
+    unsafe {
+        let shader = gl.create_shader(stage).map_err(anyhow::Error::msg)?;
+        gl.shader_source(shader, source);
+        gl.compile_shader(shader);
+        ensure!(gl.get_shader_compile_status(shader), "a shader: {}", gl.get_shader_info_log(shader));
+        gl.attach_shader(program, shader);
+    }
+    Ok(())
+}
+
+/// Links a program and uses it.
+unsafe fn link(gl: &glow::Context, program: glow::Program) -> Result<()> {
+    unsafe {
+        gl.link_program(program);
+        ensure!(gl.get_program_link_status(program), "a program: {}", gl.get_program_info_log(program));
+        gl.use_program(Some(program));
+    }
+    Ok(())
+}
+
+/// Creates and binds the target of the picture: a byte per channel, and a depth texture.
 unsafe fn picture_target(gl: &glow::Context, [width, height]: [i32; 2]) -> Result<()> {
     unsafe {
         gl.bind_framebuffer(glow::FRAMEBUFFER, Some(gl.create_framebuffer().map_err(anyhow::Error::msg)?));
         for (attachment, format) in
-            [(glow::COLOR_ATTACHMENT0, glow::RGBA8), (glow::DEPTH_ATTACHMENT, glow::DEPTH_COMPONENT24)]
+            [(glow::COLOR_ATTACHMENT0, glow::RGBA8), (glow::DEPTH_ATTACHMENT, glow::DEPTH_COMPONENT32F)]
         {
-            let buffer = gl.create_renderbuffer().map_err(anyhow::Error::msg)?;
-            gl.bind_renderbuffer(glow::RENDERBUFFER, Some(buffer));
-            gl.renderbuffer_storage(glow::RENDERBUFFER, format, width, height);
-            gl.framebuffer_renderbuffer(glow::FRAMEBUFFER, attachment, glow::RENDERBUFFER, Some(buffer));
+            let texture = gl.create_texture().map_err(anyhow::Error::msg)?;
+            gl.bind_texture(glow::TEXTURE_2D, Some(texture));
+            gl.tex_storage_2d(glow::TEXTURE_2D, 1, format, width, height);
+            gl.tex_parameter_i32(glow::TEXTURE_2D, glow::TEXTURE_MIN_FILTER, glow::NEAREST.cast_signed());
+            gl.framebuffer_texture_2d(glow::FRAMEBUFFER, attachment, glow::TEXTURE_2D, Some(texture), 0);
         }
     }
     Ok(())
@@ -233,9 +254,7 @@ unsafe fn read(gl: &glow::Context, [width, height]: [i32; 2]) -> Result<Vec<f32>
         gl.read_pixels(0, 0, width, height, glow::RGBA, glow::UNSIGNED_BYTE, PixelPackData::Slice(Some(&mut pixels)));
         gl.get_error()
     };
-    if error != glow::NO_ERROR {
-        bail!("OpenGL reports the error {error:#x}");
-    }
+    ensure!(error == glow::NO_ERROR, "OpenGL reports the error {error:#x}");
     let rows = pixels.chunks_exact(width as usize * 4).rev();
     Ok(rows.flat_map(|row| row.chunks_exact(4)).map(|pixel| f32::from(pixel[0]) / 255.0).collect())
 }
