@@ -11,7 +11,7 @@ use shadowfit_wgpu::ShadowMapDescriptor;
 
 use crate::support::{example_program, test_gpu};
 
-#[path = "../../crates/shadowfit-capi/examples/opengl/courtyard.rs"]
+#[path = "../../examples/opengl/courtyard.rs"]
 mod courtyard;
 
 use courtyard::Courtyard;

@@ -67,22 +67,13 @@ impl DemandView {
         self.rectangle[3].div_ceil(MAX_ROWS).max(1)
     }
 
-    /// Returns the cells and bins that the counts belong to, for
-    /// [`VisibleDemand::from_counts`](shadowfit::demand::VisibleDemand::from_counts).
-    ///
-    /// # Errors
-    ///
-    /// [`DemandPassError::Fit`] for an invalid view or light.
-    pub fn space(&self) -> Result<VisibleDemandSpace, DemandPassError> {
+    /// Returns the cells and bins that the counts belong to.
+    pub(super) fn space(&self) -> Result<VisibleDemandSpace, DemandPassError> {
         Ok(VisibleDemandSpace::new(&self.frustum, self.direction, self.up, self.max_distance)?)
     }
 
-    /// Returns the uniform of the shader, for engines that run it themselves. `space` is [`Self::space`].
-    ///
-    /// # Errors
-    ///
-    /// [`DemandPassError::DepthBuffer`] for an invalid matrix or depth convention.
-    pub fn uniform(&self, space: &VisibleDemandSpace) -> Result<DemandUniform, DemandPassError> {
+    /// Returns the uniform of the shader.
+    pub(super) fn uniform(&self, space: &VisibleDemandSpace) -> Result<DemandUniform, DemandPassError> {
         if self.depth == DepthConvention::NegativeOneToOne {
             return Err(DepthBufferError::Depth(self.depth).into());
         }

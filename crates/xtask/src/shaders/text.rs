@@ -135,7 +135,7 @@ pub(super) fn caster_head(language: Language, items: &[Item]) -> String {
 // Uniform block: shadowfit_CasterBlock. Layout: SHADOWFIT_CASTER_LAYOUT, such as `std140, binding = 0`.
 //
 // OpenGL: use shadowfit_caster_position_gl, which turns the map over. Front faces are then clockwise. Viewports and
-// scissor rectangles stay as the library gives them. Clip depth is -1 to 1 (DepthConvention::NegativeOneToOne) unless
+// scissor rectangles stay as the library gives them. Clip depth is -1 to 1 (SHADOWFIT_DEPTH_NEGATIVE_ONE_TO_ONE) unless
 // glClipControl makes it 0 to 1. With -1 to 1, pass depth * 0.5 + 0.5 to shadowfit_clamped_depth.
 "
         }
@@ -188,14 +188,15 @@ vec4 shadowfit_caster_position_gl(vec3 position) {
 /// Returns the first lines of the demand shader.
 pub(super) fn demand_head(language: Language) -> String {
     let mut text = head(language, "demand", "Counts the visible demand of a depth buffer. A whole compute shader.");
-    text += "// Workgroups: the view's counted points, in squares of 32 x 32. Clear `counts` to 0 before. Its first cells are\n\
+    text += "// Constants: ShadowfitDemandConstants of shadowfit.h, struct Demand below.\n\
+        // Workgroups: the view's counted points, in squares of 32 x 32. Clear `counts` to 0 before. Its first cells are\n\
         // the demand grid, the others the depth histogram.\n//\n// ";
     text += match language {
         Language::Glsl => {
             "\
 OpenGL 4.3. Uniform block: SHADOWFIT_DEMAND_BINDING (0). Depth texture without comparison: SHADOWFIT_DEPTH_BINDING
-// (0). Counts: SHADOWFIT_COUNTS_BINDING (0). Row 0 of OpenGL's depth buffers is the bottom: pass a clip matrix whose
-// second row is negated, and whose depth is the stored one, 0 to 1.
+// (0). Counts: SHADOWFIT_COUNTS_BINDING (0). Row 0 of OpenGL's depth buffers is the bottom: fill the constants for a
+// negative row stride.
 #version 430 core
 "
         }

@@ -2,7 +2,7 @@
 //! then count the wrong pixels. The argument `es` chooses OpenGL ES 3.0 instead of OpenGL 4.5.
 //!
 //! ```sh
-//! cargo run -p shadowfit-capi --example opengl -- core
+//! cargo run --example opengl -- core
 //! ```
 
 #![expect(unsafe_code, reason = "every call of OpenGL is unsafe")]
@@ -19,10 +19,10 @@ mod rays;
 use anyhow::{Context as _, Result, bail, ensure};
 use bytemuck::{Pod, cast_slice};
 use glow::{HasContext, PixelPackData};
+use shadowfit::culling::Reader;
 use shadowfit::glam::{Mat4, Vec3};
+use shadowfit::uniform::{CasterUniform, ReceiverUniform};
 use shadowfit::{DepthConvention, FittedMap, Technique};
-use shadowfit_wgpu::uniforms::{CasterUniform, ReceiverUniform};
-use shadowfit_wgpu::{MapView, ShadowMapDescriptor};
 
 use context::{Api, Headless};
 use courtyard::Courtyard;
@@ -36,7 +36,7 @@ const SIZE: [u32; 2] = [320, 180];
 // The engine's shaders, around the generated ones.
 const CASTER: [&str; 2] = [
     concat!(
-        include_str!("../shaders/shadowfit_caster.glsl"),
+        include_str!("../crates/shadowfit-capi/shaders/shadowfit_caster.glsl"),
         "
         layout(location = 0) in vec3 position;
         void main() { gl_Position = shadowfit_caster_position_gl(position); }
@@ -58,7 +58,7 @@ const RECEIVER: [&str; 2] = [
     }
     ",
     concat!(
-        include_str!("../shaders/shadowfit_lookup.glsl"),
+        include_str!("../crates/shadowfit-capi/shaders/shadowfit_lookup.glsl"),
         "
         in vec3 at;
         flat in vec3 side;
@@ -131,8 +131,8 @@ unsafe fn draw(
         gl.viewport(0, 0, width, height);
         gl.clear_color(1.0, 1.0, 1.0, 1.0);
         gl.clear(glow::COLOR_BUFFER_BIT | glow::DEPTH_BUFFER_BIT);
-        let view = MapView::from_eye(eye, courtyard.camera.forward);
-        let receiver = ReceiverUniform::new(maps, &view, &ShadowMapDescriptor::from(technique));
+        let reader = Reader::from_eye(eye, courtyard.camera.forward);
+        let receiver = ReceiverUniform::new(maps, &reader, &technique.reading()).with_fade(technique.fade_depths());
         constants(gl, program, "shadowfit_ReceiverBlock", &receiver)?;
         let clip_from_world: Mat4 = courtyard.camera.clip_from_world(DEPTH);
         let place = gl.get_uniform_location(program, "clip_from_world").context("no uniform clip_from_world")?;

@@ -3,8 +3,9 @@
 use anyhow::Result;
 use bytemuck::{bytes_of, cast_slice, cast_slice_mut};
 use glow::{HasContext, PixelPackData};
-use shadowfit::demand::{COUNTS, VisibleDemand};
+use shadowfit::demand::{COUNTS, DepthPicture, VisibleDemand, VisibleDemandSpace};
 use shadowfit::glam::{Mat4, Vec3};
+use shadowfit::uniform::DemandUniform;
 use shadowfit::{DepthConvention, Technique};
 use shadowfit_wgpu::demand::{DemandView, Depths, count_on_cpu};
 
@@ -22,21 +23,25 @@ pub(crate) unsafe fn count(
     technique: &Technique,
     size: [u32; 2],
 ) -> Result<f64> {
-    // OpenGL stores depth as 0 to 1.
-    let depth = DepthConvention::ZeroToOne;
-    let plain = DemandView::from_camera(&courtyard.camera, depth, courtyard.sun, &technique.fit, size)?;
+    let view = &courtyard.camera.frustum()?;
+    let (depth, fit) = (DepthConvention::NegativeOneToOne, &technique.fit);
+    let clip_from_world = courtyard.camera.clip_from_world(depth);
     // OpenGL's row 0 is at the bottom.
-    let turned = Mat4::from_scale(Vec3::new(1.0, -1.0, 1.0)) * plain.clip_from_world;
-    let view = DemandView { clip_from_world: turned, ..plain };
-    let space = view.space()?;
-    let uniform = view.uniform(&space)?;
+    let turned = Mat4::from_scale(Vec3::new(1.0, -1.0, 1.0)) * clip_from_world;
+    let space = VisibleDemandSpace::new(view, courtyard.sun, fit.up, fit.max_distance)?;
+    let uniform = DemandUniform::new(&DepthPicture { size, clip_from_world: turned, depth, view }, &space, 1, [0, 0])?;
 
     let mut counts = vec![0_u32; COUNTS];
     let mut depths = vec![0.0_f32; (size[0] * size[1]) as usize];
     let [width, height] = size.map(u32::cast_signed);
     unsafe {
         let program = gl.create_program().map_err(anyhow::Error::msg)?;
-        attach(gl, program, glow::COMPUTE_SHADER, include_str!("../../shaders/shadowfit_demand.glsl"))?;
+        attach(
+            gl,
+            program,
+            glow::COMPUTE_SHADER,
+            include_str!("../../crates/shadowfit-capi/shaders/shadowfit_demand.glsl"),
+        )?;
         link(gl, program)?;
         for (target, content) in
             [(glow::UNIFORM_BUFFER, bytes_of(&uniform)), (glow::SHADER_STORAGE_BUFFER, cast_slice(&counts))]
@@ -53,7 +58,9 @@ pub(crate) unsafe fn count(
     }
     let rows = depths.chunks_exact(size[0] as usize).rev();
     let from_top = Depths { width: size[0], values: rows.flatten().copied().collect() };
-    let by_cpu = count_on_cpu(&plain, &from_top)?;
+    // The twin of the shader knows only depth of 0 to 1, which is also the stored depth.
+    let twin = DemandView::from_camera(&courtyard.camera, DepthConvention::ZeroToOne, courtyard.sun, fit, size)?;
+    let by_cpu = count_on_cpu(&twin, &from_top)?;
     let Some(by_gpu) = VisibleDemand::from_counts(space, counts) else { anyhow::bail!("counts are missing") };
     let (cells, wanted) = (by_gpu.demand().counts, by_cpu.demand().counts);
     let moved: u32 = cells.iter().zip(wanted).map(|(a, b)| a.abs_diff(*b)).sum();
