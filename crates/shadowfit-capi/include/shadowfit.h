@@ -89,8 +89,8 @@ typedef struct {
     // Greatest distance of a texel that the filter reads, in texels.
     float filter_radius;
     // Names as in technique files, such as "pcf_5x5" and "depth32float".
-    const char *filter;
-    const char *format;
+    char filter[24];
+    char format[24];
 } ShadowfitTechnique;
 
 // A camera, with SHADOWFIT_DEPTH_... of its depth buffer. Planes are view depths; aspect is width divided by height.

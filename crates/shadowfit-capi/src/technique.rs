@@ -9,10 +9,10 @@
 
 use core::ffi::{CStr, c_char};
 
-use shadowfit::settings::{CasterPolicy, FilterKind, MapFormat, MapSelection};
+use shadowfit::settings::{CasterPolicy, MapSelection};
 use shadowfit::{PRESETS, Technique};
 use shadowfit_params::tool::Settings;
-use shadowfit_params::{Group, PARAMETERS, set_value};
+use shadowfit_params::{Group, Kind, PARAMETERS, Value, parameter, set_value};
 use toml_parser::decoder::{Encoding, StringBuilder};
 use toml_parser::lexer::Token;
 use toml_parser::parser::{EventReceiver, parse_document};
@@ -283,6 +283,7 @@ impl EventReceiver for Line<'_> {
 /// Returns the parts of a technique that create textures and choose shaders.
 pub(crate) fn written(technique: &Technique) -> ShadowfitTechnique {
     let selection = technique.maps.selection();
+    let settings = Settings::default().with_technique(*technique);
     ShadowfitTechnique {
         size: size_of::<ShadowfitTechnique>() as u32,
         map_count: technique.maps.count(),
@@ -292,41 +293,32 @@ pub(crate) fn written(technique: &Technique) -> ShadowfitTechnique {
         by_view_depth: u32::from(matches!(selection, MapSelection::ViewDepth { .. })),
         blend: selection.blend(),
         filter_radius: technique.filter_radius(),
-        filter: filter_name(technique.filter),
-        format: format_name(technique.format),
+        filter: option(&settings, "map.filter"),
+        format: option(&settings, "map.format"),
     }
 }
 
-const fn filter_name(filter: FilterKind) -> *const c_char {
-    match filter {
-        FilterKind::Point => c"point",
-        FilterKind::Hardware2x2 => c"hardware_2x2",
-        FilterKind::Pcf3x3 => c"pcf_3x3",
-        FilterKind::Pcf5x5 => c"pcf_5x5",
-        FilterKind::Pcf7x7 => c"pcf_7x7",
-        FilterKind::Vogel8 => c"vogel_8",
-        FilterKind::Vogel16 => c"vogel_16",
-        FilterKind::Vogel32 => c"vogel_32",
-        FilterKind::Pcss => c"pcss",
+/// Returns the id of a parameter's option, as technique files write it.
+fn option(settings: &Settings, id: &str) -> [c_char; NAME] {
+    let mut name = [0; NAME];
+    let Some(parameter) = parameter(id) else { return name };
+    let (Kind::Choice(options), Some(Value::Option(index))) = (&parameter.kind, parameter.get(settings)) else {
+        return name;
+    };
+    let id = options.get(index).map_or("", |option| option.id);
+    for (letter, byte) in name.iter_mut().zip(id.bytes()).take(NAME - 1) {
+        *letter = byte.cast_signed();
     }
-    .as_ptr()
+    name
 }
 
-const fn format_name(format: MapFormat) -> *const c_char {
-    match format {
-        MapFormat::Depth32Float => c"depth32float",
-        MapFormat::Depth24Unorm => c"depth24_unorm",
-        MapFormat::Depth16Unorm => c"depth16_unorm",
-        MapFormat::R32Float => c"r32float",
-        MapFormat::R16Float => c"r16_float",
-        MapFormat::Rgba8Packed => c"rgba8_packed",
-        MapFormat::R8Grey => c"r8_grey",
-    }
-    .as_ptr()
-}
+/// Length of a name with its zero byte.
+const NAME: usize = 24;
 
 #[cfg(test)]
 mod tests {
+    use shadowfit::settings::FilterKind;
+
     use super::*;
 
     fn refused(text: &str) -> String {
@@ -340,14 +332,16 @@ mod tests {
             assert_eq!(preset_name(index).expect("a name").to_str(), Ok(preset.name));
         }
         assert_eq!(preset_name(PRESETS.len()), None);
-        let ids = |id: &str| match &shadowfit_params::parameter(id).expect("a parameter").kind {
-            shadowfit_params::Kind::Choice(options) => options.iter().map(|option| option.id).collect::<Vec<_>>(),
-            _ => panic!("options"),
-        };
-        // SAFETY: the pointers are of literals.
-        let name = |name: *const c_char| unsafe { CStr::from_ptr(name) }.to_str().expect("ASCII");
-        assert_eq!(FilterKind::ALL.map(|filter| name(filter_name(filter))).to_vec(), ids("map.filter"));
-        assert_eq!(MapFormat::ALL.map(|format| name(format_name(format))).to_vec(), ids("map.format"));
+        for id in ["map.filter", "map.format"] {
+            let Kind::Choice(options) = parameter(id).expect("a parameter").kind else { panic!("options") };
+            for (index, wanted) in options.iter().enumerate() {
+                let mut settings = Settings::default();
+                parameter(id).expect("a parameter").set(&mut settings, Value::Option(index));
+                let name = option(&settings, id).map(c_char::cast_unsigned);
+                let text = CStr::from_bytes_until_nul(&name).expect("a zero byte");
+                assert_eq!(text.to_str(), Ok(wanted.id));
+            }
+        }
     }
 
     #[test]

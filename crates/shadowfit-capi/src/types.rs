@@ -1,6 +1,8 @@
 //! The plain data that callers pass and receive.
 #![allow(missing_docs, reason = "members whose names say all have no comment in the header")]
 
+use core::ffi::c_char;
+
 /// Version of this interface, greatest numbers of maps, views and rectangles, and length of the demand counts.
 pub const SHADOWFIT_VERSION: u32 = 1;
 pub const SHADOWFIT_MAX_MAPS: usize = 8;
@@ -174,8 +176,8 @@ pub struct ShadowfitTechnique {
     /// Greatest distance of a texel that the filter reads, in texels.
     pub filter_radius: f32,
     /// Names as in technique files, such as "pcf_5x5" and "depth32float".
-    pub filter: *const core::ffi::c_char,
-    pub format: *const core::ffi::c_char,
+    pub filter: [c_char; 24],
+    pub format: [c_char; 24],
 }
 
 /// A depth buffer that was read back, of at least 3 x 3 pixels, and the view and light that it was drawn with.

@@ -3,6 +3,7 @@
 use core::fmt;
 
 use shadowfit::DepthConvention;
+#[cfg(feature = "rays")]
 use shadowfit::glam::{DMat4, DVec4, Mat4};
 
 /// The reason why a pass cannot read the depth buffer of a view.
