@@ -14,7 +14,7 @@
 // Uniform block: shadowfit_CasterBlock. Layout: SHADOWFIT_CASTER_LAYOUT, such as `std140, binding = 0`.
 //
 // OpenGL: use shadowfit_caster_position_gl, which turns the map over. Front faces are then clockwise. Viewports and
-// scissor rectangles stay as the library gives them. Clip depth is -1 to 1 (DepthConvention::NegativeOneToOne) unless
+// scissor rectangles stay as the library gives them. Clip depth is -1 to 1 (SHADOWFIT_DEPTH_NEGATIVE_ONE_TO_ONE) unless
 // glClipControl makes it 0 to 1. With -1 to 1, pass depth * 0.5 + 0.5 to shadowfit_clamped_depth.
 
 #ifndef SHADOWFIT_CASTER_GLSL

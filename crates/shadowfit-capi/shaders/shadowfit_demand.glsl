@@ -1,12 +1,13 @@
 // shadowfit_demand.glsl: Counts the visible demand of a depth buffer. A whole compute shader.
 // Generated from the WGSL of shadowfit-wgpu by `cargo xtask generate`; the WGSL has the comments.
 //
+// Constants: ShadowfitDemandConstants of shadowfit.h, struct Demand below.
 // Workgroups: the view's counted points, in squares of 32 x 32. Clear `counts` to 0 before. Its first cells are
 // the demand grid, the others the depth histogram.
 //
 // OpenGL 4.3. Uniform block: SHADOWFIT_DEMAND_BINDING (0). Depth texture without comparison: SHADOWFIT_DEPTH_BINDING
-// (0). Counts: SHADOWFIT_COUNTS_BINDING (0). Row 0 of OpenGL's depth buffers is the bottom: pass a clip matrix whose
-// second row is negated, and whose depth is the stored one, 0 to 1.
+// (0). Counts: SHADOWFIT_COUNTS_BINDING (0). Row 0 of OpenGL's depth buffers is the bottom: fill the constants for a
+// negative row stride.
 #version 430 core
 
 #ifndef SHADOWFIT_DEMAND_BINDING

@@ -1,6 +1,7 @@
 // shadowfit_demand.metal: Counts the visible demand of a depth buffer. A whole compute shader.
 // Generated from the WGSL of shadowfit-wgpu by `cargo xtask generate`; the WGSL has the comments.
 //
+// Constants: ShadowfitDemandConstants of shadowfit.h, struct Demand below.
 // Workgroups: the view's counted points, in squares of 32 x 32. Clear `counts` to 0 before. Its first cells are
 // the demand grid, the others the depth histogram.
 //
