@@ -221,18 +221,20 @@ mod content;
 
 /// Visible demand: the surfaces that were visible, and the texel size that they need.
 pub mod demand {
+    mod counts;
     pub(crate) mod from_boxes;
     pub(crate) mod grid;
     pub(crate) mod histogram;
     mod rows;
+    #[cfg(feature = "alloc")]
     mod visible_demand;
 
+    pub use counts::{CLASSES, COUNTS, Counts, DEPTHS, VisibleDemandSpace};
     pub use grid::{CELLS, DemandGrid, DemandSpace, LEVELS, MIN_FACING, PIXELS, SIDE};
     pub use histogram::{DepthBounds, DepthHistogram, needed_texel};
     pub use rows::{DepthPicture, DepthRows};
     #[cfg(feature = "alloc")]
     pub use visible_demand::VisibleDemand;
-    pub use visible_demand::{CLASSES, COUNTS, Counts, DEPTHS, VisibleDemandSpace};
 }
 
 mod input;

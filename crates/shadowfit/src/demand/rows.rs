@@ -2,9 +2,9 @@
 
 use glam::{DMat4, DVec3, DVec4, Mat4, Vec3};
 
+use super::counts::{Counts, VisibleDemandSpace};
 use super::grid::PIXELS;
 use super::histogram::needed_texel;
-use super::visible_demand::{Counts, VisibleDemandSpace};
 use crate::base::{DepthConvention, FitError, checks};
 use crate::view::ViewFrustum;
 
