@@ -105,13 +105,16 @@ fn is_open(line: &str) -> bool {
 }
 
 /// The built libraries.
-struct Libraries {
-    fixed: PathBuf,
+pub(crate) struct Libraries {
+    pub(crate) fixed: PathBuf,
     shared: PathBuf,
 }
 
 /// Builds the libraries. Their bytes do not depend on the folders of this machine.
-fn build() -> Result<Libraries> {
+///
+/// # Errors
+/// If they cannot be built.
+pub(crate) fn build() -> Result<Libraries> {
     let target = target_folder().join("c-library");
     let mut cargo = process::cargo("rustc");
     cargo.args(["--package", "shadowfit-capi", "--lib", "--profile", "c", "--locked"]);
@@ -241,7 +244,7 @@ endif()
 }
 
 /// Flags of every C program: the strictest of common compilers.
-const FLAGS: [&str; 7] = ["-std=c99", "-O1", "-g", "-Wall", "-Wextra", "-Wpedantic", "-Werror"];
+pub(crate) const FLAGS: [&str; 7] = ["-std=c99", "-O1", "-g", "-Wall", "-Wextra", "-Wpedantic", "-Werror"];
 /// Flags of the tests that watch the memory.
 const SANITIZERS: [&str; 2] = ["-fsanitize=address,undefined", "-fno-sanitize-recover=all"];
 /// Tests in C, and the program that writes the results of Rust for them.

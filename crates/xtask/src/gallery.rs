@@ -15,6 +15,7 @@ use image::imageops::{self, FilterType};
 
 use crate::machine::Machine;
 use crate::process;
+use crate::raylib;
 use crate::run;
 use crate::setup::{self, Purpose};
 
@@ -104,13 +105,16 @@ const CORNER: (Part, u32) = ([458, 246, 47, 47], 4);
 /// The argument that renders only the film.
 const FILM: &str = "film";
 
+/// The argument that renders only the picture of the example with raylib, and the name of this picture.
+const RAYLIB: &str = "raylib";
+
 /// The argument that renders only the pictures of the viewer's tour.
 const TOUR_ONLY: &str = "tour";
 
 /// Gap between pictures of a strip, in pixels.
 const GAP: u32 = 5;
 
-/// Renders the docs' pictures. `only` limits them to some samples, the tour or the film.
+/// Renders the docs' pictures. `only` limits them to some samples, the tour, the film or the example with raylib.
 ///
 /// # Errors
 /// If the viewer or the report cannot be built, or ends with an error.
@@ -126,6 +130,9 @@ pub(crate) fn gallery(only: &[String]) -> Result<()> {
         if is_wanted(FILM) {
             film::film(&machine, &images)?;
         }
+        if is_wanted(RAYLIB) {
+            in_raylib(&images)?;
+        }
         run::say_where(&images);
         return Ok(());
     }
@@ -136,6 +143,7 @@ pub(crate) fn gallery(only: &[String]) -> Result<()> {
     shadows(&images)?;
     edges(&images)?;
     film::film(&machine, &images)?;
+    in_raylib(&images)?;
     run::say_where(&images);
     Ok(())
 }
@@ -323,6 +331,12 @@ fn report(name: &str, path: &str, techniques: &[&str], frames: &[&str], more: &[
     }
     process::run(report.stdout(Stdio::null()))?;
     Ok(out.join("pictures"))
+}
+
+/// Renders the example in C with raylib.
+fn in_raylib(images: &Path) -> Result<()> {
+    let Some(file) = raylib::picture()? else { return Ok(()) };
+    publish_within(&file, &images.join(RAYLIB).with_extension("png"), MOST_SAMPLE_BYTES, 2)
 }
 
 /// Returns a part of a picture, enlarged with square pixels.

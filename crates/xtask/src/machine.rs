@@ -44,6 +44,10 @@ pub(crate) enum Part {
     Glslang,
     /// EGL, with Mesa's software driver for OpenGL.
     Egl,
+    /// GLX, with a driver for OpenGL.
+    Gl,
+    /// The header of an X11 extension that GLFW needs.
+    XHeader(&'static str),
     /// `pkg-config` and libudev's development files, for building the gamepad feature.
     Libudev,
 }
@@ -84,6 +88,15 @@ pub(crate) const WINDOW_LIBRARIES: [(&str, &str); 5] = [
     ("libxkbcommon-x11.so.0", "libxkbcommon-x11-0"),
 ];
 
+/// Headers of X11 that GLFW includes, with their Debian packages.
+pub(crate) const X_HEADERS: [(&str, &str); 5] = [
+    ("X11/Xlib.h", "libx11-dev"),
+    ("X11/Xcursor/Xcursor.h", "libxcursor-dev"),
+    ("X11/extensions/XInput2.h", "libxi-dev"),
+    ("X11/extensions/Xinerama.h", "libxinerama-dev"),
+    ("X11/extensions/Xrandr.h", "libxrandr-dev"),
+];
+
 impl Machine {
     /// Detects the parts of this machine.
     pub(crate) fn probe() -> Self {
@@ -112,6 +125,8 @@ impl Machine {
             Part::Cmake => in_path("cmake"),
             Part::Glslang => in_path("glslangValidator"),
             Part::Egl => libraries.has("libEGL.so.1"),
+            Part::Gl => libraries.has("libGL.so.1"),
+            Part::XHeader(name) => Path::new("/usr/include").join(name).is_file(),
             Part::Libudev => process::succeeds(Command::new("pkg-config").args(["--exists", "libudev"])),
         };
         Self { parts: all_parts().filter(is_there).collect(), display }
@@ -136,6 +151,12 @@ impl Machine {
     /// Returns whether the tools for the tests of the page are available.
     pub(crate) fn can_test_page(&self) -> bool {
         self.can_render() && PAGE_TOOLS.iter().all(|&(part, _)| self.has(part))
+    }
+
+    /// Returns whether programs with raylib can be built and run without a display.
+    pub(crate) fn can_test_raylib(&self) -> bool {
+        let headers = X_HEADERS.map(|(name, _)| Part::XHeader(name));
+        [Part::Xvfb, Part::Gl].into_iter().chain(headers).all(|part| self.has(part))
     }
 
     /// Returns whether the tools for the window test are available.
@@ -164,10 +185,12 @@ fn all_parts() -> impl Iterator<Item = Part> {
         Part::Cmake,
         Part::Glslang,
         Part::Egl,
+        Part::Gl,
         Part::Libudev,
     ]
     .into_iter()
     .chain(window_libraries())
+    .chain(X_HEADERS.map(|(name, _)| Part::XHeader(name)))
 }
 
 /// Returns the display, given the system's name and the two environment variables (empty counts as unset).

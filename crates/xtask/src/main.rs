@@ -25,6 +25,8 @@ mod maths;
 mod npm;
 mod process;
 #[cfg(feature = "tools")]
+mod raylib;
+#[cfg(feature = "tools")]
 mod release;
 mod run;
 mod rustdoc;
@@ -91,7 +93,7 @@ enum Task {
     /// Render the pictures of the README and the docs again.
     Gallery {
         /// Render only these: samples by their names, for example `xna-shadow-mapping`, `tour` for the pictures
-        /// of the viewer's window, or `film` for the film of the README.
+        /// of the viewer's window, `raylib` for the example in C, or `film` for the film of the README.
         only: Vec<String>,
     },
     /// Measure with `shadowfit-bench` and write the tables to docs/figures: of the core crate, with
@@ -139,6 +141,9 @@ enum Task {
         /// Tests the library in C, with sanitizers, in threads, and against the same fits in Rust.
         #[arg(long, conflicts_with = "archive")]
         test: bool,
+        /// Fetches raylib, builds the example with it, and compares its shadows with rays.
+        #[arg(long, conflicts_with_all = ["archive", "test"])]
+        raylib: bool,
     },
     /// Prepare a release: check it, and print the commands that publish it.
     Release {
@@ -191,6 +196,8 @@ fn main() -> ExitCode {
         Task::Npm { .. } => npm::pack().map(|_| ()),
         #[cfg(feature = "tools")]
         Task::Capi { test: true, .. } => capi::test(),
+        #[cfg(feature = "tools")]
+        Task::Capi { raylib: true, .. } => raylib::test(),
         #[cfg(feature = "tools")]
         Task::Capi { archive, .. } => {
             capi::archive(&archive.unwrap_or_else(|| process::root().join("out/c"))).map(|_| ())

@@ -5,7 +5,7 @@ use std::process::Command;
 
 use anyhow::{Result, bail};
 
-use crate::machine::{Display, Machine, PAGE_TOOLS, Part, WINDOW_LIBRARIES};
+use crate::machine::{Display, Machine, PAGE_TOOLS, Part, WINDOW_LIBRARIES, X_HEADERS};
 use crate::process;
 
 /// The purpose of preparing the machine.
@@ -21,6 +21,8 @@ pub(crate) enum Purpose {
     Page,
     /// Testing the C library: `CMake`.
     C,
+    /// Building the example with raylib, and running it without a display.
+    Raylib,
     /// Running the tests: the software driver of the golden images, and the tools of the window test.
     Test,
     /// Also drawing on a second software driver.
@@ -86,6 +88,11 @@ fn missing_packages(purpose: Purpose, machine: &Machine) -> Vec<&'static str> {
         if matches!(purpose, Purpose::Run | Purpose::Peers) { Part::VulkanDriver } else { Part::SoftwareDriver };
     if purpose == Purpose::C {
         return if machine.has(Part::Cmake) { Vec::new() } else { vec!["cmake"] };
+    }
+    if purpose == Purpose::Raylib {
+        let needs = [(Part::Xvfb, "xvfb"), (Part::Gl, "libgl1")].into_iter();
+        let headers = X_HEADERS.map(|(header, package)| (Part::XHeader(header), package));
+        return needs.chain(headers).filter(|&(part, _)| !machine.has(part)).map(|(_, package)| package).collect();
     }
     let mut needs = vec![(Part::VulkanLoader, "libvulkan1"), (driver, "mesa-vulkan-drivers")];
     if testing || machine.display == Display::X11 {
@@ -221,7 +228,7 @@ mod tests {
     #[test]
     fn a_complete_machine_gets_nothing() {
         for display in [Display::None, Display::X11, Display::Wayland, Display::Desktop] {
-            for purpose in [Purpose::Run, Purpose::Pictures, Purpose::TestAll] {
+            for purpose in [Purpose::Run, Purpose::Pictures, Purpose::Raylib, Purpose::TestAll] {
                 assert!(missing_packages(purpose, &Machine::complete(display)).is_empty());
             }
         }

@@ -163,6 +163,7 @@ pub(crate) fn test(tier: Tier, names: &[String], gpu: bool) -> Result<()> {
         report.run("tests of the core with the oldest glam", portability::suite_with_oldest_glam);
         report.run("lints and tests of bevy-shadowfit", bevy::check_and_test);
         report.run("tests of the page", || process::run(process::with_tools().args(["web", "--test", "--long"])));
+        report.run("shadows in raylib", || process::run(process::with_tools().args(["capi", "--raylib"])));
         report.run("tests of the npm package", || process::run(process::with_tools().args(["npm", "--test"])));
         report.run("tests of the C library", || process::run(process::with_tools().args(["capi", "--test"])));
     }
