@@ -24,7 +24,10 @@ const SOURCES: [&str; 5] = ["error.rs", "types.rs", "constants.rs", "state.rs", 
 const MOST_LINES: usize = 400;
 /// Greatest length of a line with parameters.
 const WIDTH: usize = 118;
-/// The example in the archive.
+/// Folders whose files are in the archive.
+const EXAMPLES: &str = "examples/c";
+const SHADERS: &str = "crates/shadowfit-capi/shaders";
+/// The example without graphics.
 const EXAMPLE: &str = "examples/c/fit_once.c";
 /// The page for users in C and C++, which is the archive's README.
 const PAGE: &str = "docs/C.md";
@@ -163,40 +166,44 @@ fn files() -> Result<(String, Vec<File>)> {
     let read = |path: &Path| fs::read(path).with_context(|| format!("cannot read {}", path.display()));
     let own = |path: &str| read(&process::root().join(path));
     let mut files = vec![
-        ("README.md".to_owned(), own(PAGE)?),
+        ("README.md".to_owned(), page()?.into_bytes()),
         ("include/shadowfit.h".to_owned(), own(HEADER)?),
         (format!("lib/{}", library_name(&fixed)?), read(&fixed)?),
         (format!("lib/{}", library_name(&shared)?), read(&shared)?),
         ("lib/cmake/shadowfit/shadowfit-config.cmake".to_owned(), cmake(&fixed, &shared)?.into_bytes()),
         ("lib/cmake/shadowfit/shadowfit-config-version.cmake".to_owned(), cmake_version(version).into_bytes()),
-        ("examples/fit_once.c".to_owned(), own(EXAMPLE)?),
     ];
+    for (example, path) in folder(EXAMPLES)? {
+        files.push((format!("examples/{example}"), read(&path)?));
+    }
     for license in LICENSES {
         files.push((license.to_owned(), own(license)?));
     }
-    for (shader, path) in shaders()? {
+    for (shader, path) in folder(SHADERS)? {
         files.push((format!("shaders/{shader}"), read(&path)?));
     }
     Ok((name, files))
 }
 
-/// Returns the shader files by their names, in order.
-fn shaders() -> Result<Vec<(String, PathBuf)>> {
-    let mut waiting = vec![(String::new(), process::root().join(CRATE).join("shaders"))];
+/// Returns the files of a folder of the workspace by their names, in order.
+fn folder(name: &str) -> Result<Vec<(String, PathBuf)>> {
+    let folder = process::root().join(name);
     let mut found = Vec::new();
-    while let Some((prefix, folder)) = waiting.pop() {
-        for entry in fs::read_dir(&folder).with_context(|| format!("cannot read {}", folder.display()))? {
-            let path = entry?.path();
-            let name = path.file_name().unwrap_or_default().to_string_lossy();
-            if path.is_dir() {
-                waiting.push((format!("{prefix}{name}/"), path));
-            } else {
-                found.push((format!("{prefix}{name}"), path));
-            }
-        }
+    for entry in fs::read_dir(&folder).with_context(|| format!("cannot read {}", folder.display()))? {
+        let path = entry?.path();
+        found.push((path.file_name().unwrap_or_default().to_string_lossy().into_owned(), path));
     }
     found.sort();
     Ok(found)
+}
+
+/// Returns the page with links to files of the archive in place of links to files of the repository.
+fn page() -> Result<String> {
+    let page = fs::read_to_string(process::root().join(PAGE)).with_context(|| format!("cannot read {PAGE}"))?;
+    let page =
+        page.replace("](../examples/c/", "](examples/").replace("](../crates/shadowfit-capi/shaders/", "](shaders/");
+    ensure!(!page.contains("](../"), "{PAGE} has a link that leads out of the archive");
+    Ok(page)
 }
 
 /// Returns the name of a library in the archive: without the crate's suffix.
