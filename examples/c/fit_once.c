@@ -1,4 +1,4 @@
-// Fits four shadow maps to a camera for three frames, and prints what an engine does with them. Compile it with
+// Fits four shadow maps to a camera for three frames, and prints an engine's steps. Compile it with
 //     cc fit_once.c -Iinclude lib/libshadowfit.a -lm
 // in the folder of the archive.
 

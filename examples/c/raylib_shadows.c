@@ -21,7 +21,7 @@ enum { WIDTH = 1280, HEIGHT = 720, MAX_OBJECTS = 1000 };
 // Planes of the camera, in metres.
 static const double NEAR_PLANE = 0.1, FAR_PLANE = 250;
 
-// Direction in which the sunlight travels.
+// Direction of the sunlight's travel.
 static const Vector3 SUN = {-0.72f, -0.4f, 0.34f};
 
 // An axis-aligned box with a colour.

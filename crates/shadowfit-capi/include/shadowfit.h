@@ -29,7 +29,7 @@
 #define SHADOWFIT_CASTERS_VISIBLE 0
 #define SHADOWFIT_CASTERS_ALL 1
 
-// Parts of a kept map to clear and draw: none, the rectangles, or the whole map, which is then the only rectangle.
+// Update of a kept map: draw nothing, clear and draw the rectangles, or the whole map, as the only rectangle.
 #define SHADOWFIT_UPDATE_NOTHING 0
 #define SHADOWFIT_UPDATE_RECTS 1
 #define SHADOWFIT_UPDATE_WHOLE 2
@@ -147,7 +147,7 @@ typedef struct {
 typedef struct {
     // First box: least x, y, z, greatest x, y, z. Null if the boxes are unknown.
     const float *min_max;
-    // Number of boxes. 0 with a pointer means that there is no object.
+    // Number of boxes. 0 with a pointer means that no object exists.
     size_t count;
     // Bytes from one box to the next; 0 for boxes without gaps.
     size_t stride;
@@ -162,7 +162,7 @@ typedef struct {
     uint32_t view_count;
     // The views that share the maps. View depths count from the first one.
     const ShadowfitView *views;
-    // Direction in which the light travels, from the sun to the scene.
+    // Direction of the light's travel, from the sun to the scene.
     float light_direction[3];
     // Number of the frame, which moves the pattern of soft filters; 0 for a fixed pattern.
     uint32_t number;
@@ -285,7 +285,7 @@ typedef struct {
     float frame_shift;
     uint32_t is_off;
     uint32_t padding[2];
-    // The maps in the order in which a point tries them.
+    // The maps, in the order of selection: a point reads the first one that covers it.
     ShadowfitMapConstants maps[SHADOWFIT_MAX_MAPS];
 } ShadowfitReceiverConstants;
 
@@ -362,7 +362,7 @@ ShadowfitResult shadowfit_demand_constants(ShadowfitState *state, const Shadowfi
 ShadowfitResult shadowfit_set_visible_counts(ShadowfitState *state, const ShadowfitDepths *depths,
     const uint32_t *counts);
 
-// Fits the maps of a frame. After an error there are no maps; draw the frame without shadows.
+// Fits the maps of a frame. If it fails, draw the frame without shadows.
 ShadowfitResult shadowfit_fit(ShadowfitState *state, const ShadowfitFrame *frame, ShadowfitMaps *maps);
 
 // Writes the indices of the boxes to draw into a map of the last fit, and their number. which is

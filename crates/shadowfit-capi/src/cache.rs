@@ -22,7 +22,7 @@ pub(crate) fn update(state: &mut State, map: u32, changed: Option<BoxList>) -> R
     state.keeps = true;
     let kept = &mut state.kept[map as usize];
     if now.projection.is_empty {
-        // Nothing in view reads the map, and the next one is drawn as a whole.
+        // No point in view reads the map, and the next one is drawn as a whole.
         *kept = Kept { map: None, is_current: true };
         return Ok(NOTHING);
     }

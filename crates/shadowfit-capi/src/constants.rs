@@ -62,7 +62,7 @@ pub struct ShadowfitReceiverConstants {
     pub frame_shift: f32,
     pub is_off: u32,
     pub padding: [u32; 2],
-    /// The maps in the order in which a point tries them.
+    /// The maps, in the order of selection: a point reads the first one that covers it.
     pub maps: [ShadowfitMapConstants; crate::types::SHADOWFIT_MAX_MAPS],
 }
 

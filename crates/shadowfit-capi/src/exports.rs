@@ -236,7 +236,7 @@ pub unsafe extern "C" fn shadowfit_set_visible_counts(
     }
 }
 
-/// Fits the maps of a frame. After an error there are no maps; draw the frame without shadows.
+/// Fits the maps of a frame. If it fails, draw the frame without shadows.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn shadowfit_fit(
     state: *mut ShadowfitState,

@@ -336,7 +336,7 @@ impl Indices {
         if first.is_null() && capacity > 0 { Err(Code::ShadowfitNullPointer) } else { Ok(Self { first, capacity }) }
     }
 
-    /// Writes as many numbers as there is room for. Returns how many there are.
+    /// Writes numbers up to the capacity. Returns the count of all.
     pub(crate) fn fill(&self, numbers: impl Iterator<Item = u32>) -> usize {
         let mut count = 0;
         for number in numbers {

@@ -21,7 +21,7 @@ pub const SHADOWFIT_DEPTH_REVERSED: u32 = 2;
 pub const SHADOWFIT_CASTERS_VISIBLE: u32 = 0;
 pub const SHADOWFIT_CASTERS_ALL: u32 = 1;
 
-/// Parts of a kept map to clear and draw: none, the rectangles, or the whole map, which is then the only rectangle.
+/// Update of a kept map: draw nothing, clear and draw the rectangles, or the whole map, as the only rectangle.
 pub const SHADOWFIT_UPDATE_NOTHING: u32 = 0;
 pub const SHADOWFIT_UPDATE_RECTS: u32 = 1;
 pub const SHADOWFIT_UPDATE_WHOLE: u32 = 2;
@@ -83,7 +83,7 @@ pub struct ShadowfitView {
 pub struct ShadowfitBoxes {
     /// First box: least x, y, z, greatest x, y, z. Null if the boxes are unknown.
     pub min_max: *const f32,
-    /// Number of boxes. 0 with a pointer means that there is no object.
+    /// Number of boxes. 0 with a pointer means that no object exists.
     pub count: usize,
     /// Bytes from one box to the next; 0 for boxes without gaps.
     pub stride: usize,
@@ -100,7 +100,7 @@ pub struct ShadowfitFrame {
     pub view_count: u32,
     /// The views that share the maps. View depths count from the first one.
     pub views: *const ShadowfitView,
-    /// Direction in which the light travels, from the sun to the scene.
+    /// Direction of the light's travel, from the sun to the scene.
     pub light_direction: [f32; 3],
     /// Number of the frame, which moves the pattern of soft filters; 0 for a fixed pattern.
     pub number: u32,

@@ -1,4 +1,4 @@
-//! Views: what a camera sees, from its parameters or from its matrix.
+//! Views of cameras, from their parameters or from their matrices.
 
 use shadowfit::glam::{DMat4, DVec3, Mat4, Vec3};
 use shadowfit::{Camera, DepthConvention, Lens, ViewFrustum};

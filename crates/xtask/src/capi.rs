@@ -212,7 +212,7 @@ fn library_name(built: &Path) -> Result<String> {
     Ok(name.replace("_capi", ""))
 }
 
-/// Returns the file by which `CMake`'s `find_package(shadowfit)` finds the libraries.
+/// Returns the file for `CMake`'s `find_package(shadowfit)`, with the paths of the libraries.
 fn cmake(fixed: &Path, shared: &Path) -> Result<String> {
     let (fixed, shared) = (library_name(fixed)?, library_name(shared)?);
     Ok(format!(
@@ -236,7 +236,7 @@ unset(_shadowfit_root)
     ))
 }
 
-/// Returns the file by which `CMake` compares versions. A program asks for the version or for its first numbers.
+/// Returns the file that compares versions for `CMake`. A program asks for the version or for its first numbers.
 fn cmake_version(version: &str) -> String {
     format!(
         "set(PACKAGE_VERSION \"{version}\")

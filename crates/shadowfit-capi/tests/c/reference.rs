@@ -1,5 +1,5 @@
-//! Writes what the core computes, for the tests in C: `walk.bin`, a walk of 60 frames with everything that C must
-//! compute equally, and `xna.bin`, the matrices of the XNA sample.
+//! Writes results of the core for the tests in C: `walk.bin`, a walk of 60 frames, and `xna.bin`, the matrices of the
+//! XNA sample. C must compute the same.
 //!
 //! Files are numbers in the byte order of this machine, as `tests.c` reads them.
 

@@ -297,7 +297,7 @@ static void calls_out_of_order_name_the_missing_call(void) {
     CHECK(strstr(shadowfit_error(state), "shadowfit_update") != NULL);
     for (uint32_t i = 1; i < maps.count; i++) CHECK_OK(state, shadowfit_update(state, i, NULL, &update));
     CHECK_OK(state, shadowfit_receiver_constants(state, &receiver));
-    // Nothing has moved, so nothing is drawn, until a caster changes or the texture is lost.
+    // A frame without movement draws no texel, until a caster changes or the texture is lost.
     CHECK_OK(state, shadowfit_fit(state, &frame, &maps));
     CHECK_OK(state, shadowfit_update(state, 0, NULL, &update));
     CHECK(update.kind == SHADOWFIT_UPDATE_NOTHING && update.rect_count == 0);

@@ -1,4 +1,4 @@
-//! The space in which the visible points of a picture are counted, in memory that the caller owns.
+//! The space of the visible points of a picture, with counts in memory that the caller owns.
 
 use glam::Vec3;
 
@@ -19,7 +19,7 @@ pub const COUNTS: usize = CELLS + DEPTHS * CLASSES;
 /// Counts of visible points: cells of the grid, then bins of the histogram, class by class.
 pub type Counts = [u32; COUNTS];
 
-/// Space in which the points of a picture are counted.
+/// Cells and bins that count the points of a picture.
 ///
 /// Its methods count in memory that the caller owns. [`VisibleDemand`](crate::VisibleDemand) owns its memory and needs
 /// the feature `alloc`.
