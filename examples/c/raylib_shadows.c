@@ -21,7 +21,7 @@ enum { WIDTH = 1280, HEIGHT = 720, MAX_OBJECTS = 1000 };
 // Planes of the camera, in metres.
 static const double NEAR_PLANE = 0.1, FAR_PLANE = 250;
 
-// Direction of the sunlight's travel.
+// Direction of travel of the sunlight.
 static const Vector3 SUN = {-0.72f, -0.4f, 0.34f};
 
 // An axis-aligned box with a colour.
@@ -322,7 +322,7 @@ static void write_factors(FILE *file, Camera3D camera, Image factors) {
     }
 }
 
-// Number of frames whose factors are written. A few more may follow if the number of frames is no multiple of it.
+// Least number of frames whose factors are written.
 enum { JUDGED_FRAMES = 4 };
 
 typedef struct {

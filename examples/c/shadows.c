@@ -19,7 +19,7 @@ enum { CASTER_BUFFER, RECEIVER_BUFFER, DEPTH_BUFFER, BUFFERS };
 
 // A texture unit that raylib's materials leave alone, and the pixels across and down per counted point of the depth
 // buffer.
-enum { TEXTURE_UNIT = 15, DEPTH_STEP = 8 };
+enum { TEXTURE_UNIT = 15, DEPTH_STEP = 16 };
 
 struct Shadows {
     ShadowfitState *state;

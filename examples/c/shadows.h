@@ -8,7 +8,7 @@
 #include "raylib.h"
 #include "shadowfit.h"
 
-// The boxes of a scene's objects: all boxes, the static ones, and the moving ones.
+// The boxes of all objects, of the objects that never move, and of the objects that may move.
 typedef struct {
     ShadowfitBoxes all, fixed, moving;
     // Draws an object of fixed or moving with a material, for example with DrawMesh.
@@ -24,7 +24,7 @@ Shadows *shadows_load(const char *shader_folder, size_t max_objects);
 Shader shadows_load_shader(const Shadows *shadows, const char *vertex, const char *fragment);
 
 // Draws the shadow maps of a frame. Call it before BeginDrawing and BeginTextureMode. light is the direction of
-// its travel.
+// travel of the light.
 void shadows_draw(Shadows *shadows, Camera3D camera, float aspect, Vector3 light, const ShadowObjects *objects);
 
 // Starts to read the depths of the bound framebuffer, which place the maps of the next frame. Call it after the scene

@@ -127,7 +127,7 @@ typedef struct {
     uint32_t size;
     uint32_t width;
     uint32_t height;
-    // One point is counted per this many pixels across and down, such as 8.
+    // Pixels per counted point, across and down. A few hundred points are enough.
     uint32_t step;
     // First depth of the top row, as stored, in 0 to 1.
     const float *depths;
@@ -188,8 +188,7 @@ typedef struct {
 typedef struct {
     // Draws casters: from world positions to clip space, x right, y up.
     float clip_from_world[16];
-    // Reads the map: from world positions to u (right), v (down) and the stored depth. With OpenGL, whose
-    // textures begin at the bottom, use 1 - v.
+    // Reads the map: from world positions to u (right), v (down) and the stored depth. For OpenGL, see the README.
     float uv_from_world[16];
     // From world positions to the light's axes, in metres. The light looks along -z.
     float light_from_world[16];
@@ -227,7 +226,8 @@ typedef struct {
 } ShadowfitRect;
 
 // The parts of a kept map to clear and draw again. A map that moves keeps its texels where they are: texel t of
-// the map is stored at (t + texel_offset) modulo its size, so the sampler must repeat.
+// the map is stored at (t + texel_offset) modulo its size, so the sampler must repeat, and a caster of the whole map
+// is drawn with up to four viewports: see the README.
 typedef struct {
     uint32_t size;
     uint32_t kind;

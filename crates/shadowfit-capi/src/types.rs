@@ -130,8 +130,7 @@ pub struct ShadowfitBias {
 pub struct ShadowfitMap {
     /// Draws casters: from world positions to clip space, x right, y up.
     pub clip_from_world: [f32; 16],
-    /// Reads the map: from world positions to u (right), v (down) and the stored depth. With OpenGL, whose
-    /// textures begin at the bottom, use 1 - v.
+    /// Reads the map: from world positions to u (right), v (down) and the stored depth. For OpenGL, see the README.
     pub uv_from_world: [f32; 16],
     /// From world positions to the light's axes, in metres. The light looks along -z.
     pub light_from_world: [f32; 16],
@@ -187,7 +186,7 @@ pub struct ShadowfitDepths {
     pub size: u32,
     pub width: u32,
     pub height: u32,
-    /// One point is counted per this many pixels across and down, such as 8.
+    /// Pixels per counted point, across and down. A few hundred points are enough.
     pub step: u32,
     /// First depth of the top row, as stored, in 0 to 1.
     pub depths: *const f32,
@@ -212,7 +211,8 @@ pub struct ShadowfitRect {
 }
 
 /// The parts of a kept map to clear and draw again. A map that moves keeps its texels where they are: texel t of
-/// the map is stored at (t + texel_offset) modulo its size, so the sampler must repeat.
+/// the map is stored at (t + texel_offset) modulo its size, so the sampler must repeat, and a caster of the whole map
+/// is drawn with up to four viewports: see the README.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct ShadowfitUpdate {

@@ -14,7 +14,7 @@ use crate::setup::{self, Purpose};
 
 /// Version of the crate with raylib's sources. It is raylib 6.0.
 const VERSION: &str = "6.0.0";
-/// Sources of raylib that the example needs. It has no sound.
+/// Sources of raylib that the example needs: all files except sound.
 const SOURCES: [&str; 6] = ["rcore", "rglfw", "rmodels", "rshapes", "rtext", "rtextures"];
 /// Flags for raylib: a window on X11, OpenGL 3.3.
 const RAYLIB_FLAGS: [&str; 6] =
