@@ -48,6 +48,7 @@ int main(void) {
 
     // 2. The technique. The default is "windows-4": four maps of 2048 x 2048 texels. Create one depth texture with
     // technique.map_count layers of technique.resolution, and a sampler that compares, filters and repeats.
+    // OpenGL also needs depth = "negative_one_to_one" here.
     const char *changes = "[map]\nresolution = 1024\nfilter = \"pcf_5x5\"\n";
     check(state, shadowfit_set_technique(state, changes, strlen(changes)));
     ShadowfitTechnique technique = {.size = sizeof technique};

@@ -160,7 +160,7 @@ static uint32_t draw_map(Shadows *s, uint32_t map, const ShadowObjects *objects)
         draw_casters(s, objects, false, count, rect->viewport_x, rect->viewport_y);
     }
 
-    // Moving casters, over a copy. Texels wrap around the borders of the layer, so a map has up to four viewports.
+    // Moving casters, over a copy.
     check(s, shadowfit_casters(s->state, map, NULL, SHADOWFIT_CASTERS_VISIBLE, &objects->moving, s->casters,
                                s->max_objects, &count));
     if (count == 0) return map;
@@ -168,8 +168,8 @@ static uint32_t draw_map(Shadows *s, uint32_t map, const ShadowObjects *objects)
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, s->framebuffers[layer]);
     glScissor(0, 0, width, height);
     glBlitFramebuffer(0, 0, width, height, 0, 0, width, height, GL_DEPTH_BUFFER_BIT, GL_NEAREST);
-    for (int y = (int)update.texel_offset[1]; y > -height; y -= height) {
-        for (int x = (int)update.texel_offset[0]; x > -width; x -= width) draw_casters(s, objects, true, count, x, y);
+    for (uint32_t i = 0; i < update.viewport_count; i++) {
+        draw_casters(s, objects, true, count, update.viewports[i][0], update.viewports[i][1]);
     }
     return layer;
 }

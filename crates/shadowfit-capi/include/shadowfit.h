@@ -188,12 +188,11 @@ typedef struct {
 typedef struct {
     // Draws casters: from world positions to clip space, x right, y up.
     float clip_from_world[16];
-    // Reads the map: from world positions to u (right), v (down) and the stored depth. For OpenGL, see the README.
+    // Reads the map: from world positions to u (right), v (down) and the stored depth.
     float uv_from_world[16];
     // From world positions to the light's axes, in metres. The light looks along -z.
     float light_from_world[16];
     ShadowfitBias bias;
-    // Width and height of a texel, in metres across the light.
     float texel_size[2];
     // Distance from the near plane to the far plane, in metres along the light.
     float depth_range;
@@ -226,16 +225,17 @@ typedef struct {
 } ShadowfitRect;
 
 // The parts of a kept map to clear and draw again. A map that moves keeps its texels where they are: texel t of
-// the map is stored at (t + texel_offset) modulo its size, so the sampler must repeat, and a caster of the whole map
-// is drawn with up to four viewports: see the README.
+// the map is stored at (t + texel_offset) modulo its size, so the sampler must repeat.
 typedef struct {
     uint32_t size;
     uint32_t kind;
-    // Position of the map's first texel in the texture.
     uint32_t texel_offset[2];
     uint32_t rect_count;
     // Scissor rectangles with their viewports.
     ShadowfitRect rects[SHADOWFIT_MAX_RECTS];
+    // Corners (x, y) of the viewports that draw the whole map, such as for moving casters: up to four if it wraps.
+    uint32_t viewport_count;
+    int32_t viewports[4][2];
 } ShadowfitUpdate;
 
 // Block of the caster shader, one for each map.

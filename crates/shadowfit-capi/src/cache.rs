@@ -36,6 +36,11 @@ pub(crate) fn update(state: &mut State, map: u32, changed: Option<BoxList>) -> R
     });
     *kept = Kept { map: Some(FittedMap { texel_offset: offset, ..now }), is_current: true };
     let mut update = ShadowfitUpdate { texel_offset: offset.to_array(), ..NOTHING };
+    // One viewport for each piece of the whole map.
+    for (piece, viewport) in TexelRect::all(size).stored(offset, size).zip(&mut update.viewports) {
+        *viewport = piece.viewport().to_array();
+        update.viewport_count += 1;
+    }
     let Some(scroll) = scroll else {
         update.kind = SHADOWFIT_UPDATE_WHOLE;
         push(&mut update, TexelRect::all(size), offset, size);
@@ -59,6 +64,8 @@ const NOTHING: ShadowfitUpdate = ShadowfitUpdate {
     texel_offset: [0; 2],
     rect_count: 0,
     rects: [ShadowfitRect { x: 0, y: 0, width: 0, height: 0, viewport_x: 0, viewport_y: 0 }; SHADOWFIT_MAX_RECTS],
+    viewport_count: 0,
+    viewports: [[0; 2]; 4],
 };
 
 /// Adds the stored pieces of a rectangle.

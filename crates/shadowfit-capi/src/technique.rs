@@ -358,6 +358,18 @@ mod tests {
     }
 
     #[test]
+    fn the_list_of_parameters_is_the_default_technique_and_names_them_all() {
+        let list = include_str!("../technique.toml");
+        let read = with_text(&preset("calm-4").unwrap_or_default(), list)
+            .map_err(|failure| failure.text.as_c_str().to_owned());
+        assert_eq!(read.expect("valid"), Technique::default());
+        for parameter in shadowfit_params::technique_parameters() {
+            let key = parameter.id.split_once('.').expect("a group").1;
+            assert!(list.contains(&format!("\n{key} = ")) || list.contains(&format!("`{key}`")), "{key}");
+        }
+    }
+
+    #[test]
     fn a_wrong_text_names_line_and_key() {
         for (text, words) in [
             ("[bias]\nbent = 1", &["line 2", "bias.bent", "slope"][..]),

@@ -130,12 +130,11 @@ pub struct ShadowfitBias {
 pub struct ShadowfitMap {
     /// Draws casters: from world positions to clip space, x right, y up.
     pub clip_from_world: [f32; 16],
-    /// Reads the map: from world positions to u (right), v (down) and the stored depth. For OpenGL, see the README.
+    /// Reads the map: from world positions to u (right), v (down) and the stored depth.
     pub uv_from_world: [f32; 16],
     /// From world positions to the light's axes, in metres. The light looks along -z.
     pub light_from_world: [f32; 16],
     pub bias: ShadowfitBias,
-    /// Width and height of a texel, in metres across the light.
     pub texel_size: [f32; 2],
     /// Distance from the near plane to the far plane, in metres along the light.
     pub depth_range: f32,
@@ -211,18 +210,19 @@ pub struct ShadowfitRect {
 }
 
 /// The parts of a kept map to clear and draw again. A map that moves keeps its texels where they are: texel t of
-/// the map is stored at (t + texel_offset) modulo its size, so the sampler must repeat, and a caster of the whole map
-/// is drawn with up to four viewports: see the README.
+/// the map is stored at (t + texel_offset) modulo its size, so the sampler must repeat.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct ShadowfitUpdate {
     pub size: u32,
     pub kind: u32,
-    /// Position of the map's first texel in the texture.
     pub texel_offset: [u32; 2],
     pub rect_count: u32,
     /// Scissor rectangles with their viewports.
     pub rects: [ShadowfitRect; SHADOWFIT_MAX_RECTS],
+    /// Corners (x, y) of the viewports that draw the whole map, such as for moving casters: up to four if it wraps.
+    pub viewport_count: u32,
+    pub viewports: [[i32; 2]; 4],
 }
 
 /// A filter of your own shader: SHADOWFIT_BIAS_... that it can apply, and SHADOWFIT_FORMAT_... of the map.

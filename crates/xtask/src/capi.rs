@@ -1,6 +1,8 @@
 //! `cargo xtask capi`: the C library. `crates/shadowfit-capi/include/shadowfit.h` is generated from the crate and
 //! committed. An archive holds it with the libraries, the files for `CMake`, the shaders and an example.
 
+mod parameters;
+
 use std::ffi::OsStr;
 use std::fs;
 use std::io::Write as _;
@@ -17,7 +19,9 @@ use crate::setup::{self, Purpose};
 /// Folder of the crate.
 const CRATE: &str = "crates/shadowfit-capi";
 /// The generated header.
-pub(crate) const HEADER: &str = "crates/shadowfit-capi/include/shadowfit.h";
+const HEADER: &str = "crates/shadowfit-capi/include/shadowfit.h";
+/// The generated list of parameters.
+const PARAMETERS: &str = "crates/shadowfit-capi/technique.toml";
 /// Files with public items, in the order of the header.
 const SOURCES: [&str; 5] = ["error.rs", "types.rs", "constants.rs", "state.rs", "exports.rs"];
 /// Greatest number of lines of the header. People read it from top to bottom.
@@ -43,11 +47,19 @@ const INTRODUCTION: &str = "\
 // shadowfit_error returns a sentence about it. Null and misaligned pointers are safe and return a code.
 ";
 
+/// Returns the generated files, with their texts.
+///
+/// # Errors
+/// As [`header`].
+pub(crate) fn generated() -> Result<[(String, String); 2]> {
+    Ok([(HEADER.to_owned(), header()?), (PARAMETERS.to_owned(), parameters::text())])
+}
+
 /// Returns the text of the header.
 ///
 /// # Errors
 /// If the crate cannot be parsed, or the header is too long.
-pub(crate) fn header() -> Result<String> {
+fn header() -> Result<String> {
     let mut config = Config {
         language: Language::C,
         include_guard: Some("SHADOWFIT_H".to_owned()),
@@ -168,6 +180,7 @@ fn files() -> Result<(String, Vec<File>)> {
     let mut files = vec![
         ("README.md".to_owned(), page()?.into_bytes()),
         ("include/shadowfit.h".to_owned(), own(HEADER)?),
+        ("technique.toml".to_owned(), own(PARAMETERS)?),
         (format!("lib/{}", library_name(&fixed)?), read(&fixed)?),
         (format!("lib/{}", library_name(&shared)?), read(&shared)?),
         ("lib/cmake/shadowfit/shadowfit-config.cmake".to_owned(), cmake(&fixed, &shared)?.into_bytes()),
@@ -200,8 +213,7 @@ fn folder(name: &str) -> Result<Vec<(String, PathBuf)>> {
 /// Returns the page with links to files of the archive in place of links to files of the repository.
 fn page() -> Result<String> {
     let page = fs::read_to_string(process::root().join(PAGE)).with_context(|| format!("cannot read {PAGE}"))?;
-    let page =
-        page.replace("](../examples/c/", "](examples/").replace("](../crates/shadowfit-capi/shaders/", "](shaders/");
+    let page = page.replace("](../examples/c/", "](examples/").replace("](../crates/shadowfit-capi/", "](");
     ensure!(!page.contains("](../"), "{PAGE} has a link that leads out of the archive");
     Ok(page)
 }

@@ -62,7 +62,7 @@ fn stale() -> Result<Vec<(String, String)>> {
     {
         files.extend(maths::pictures()?);
         files.extend(shaders::files()?);
-        files.push((capi::HEADER.to_owned(), capi::header()?));
+        files.extend(capi::generated()?);
     }
     files.retain(|(name, text)| read(name).ok().as_ref() != Some(text));
     Ok(files)

@@ -68,6 +68,17 @@ static void check_casters(FILE *file, ShadowfitState *state, uint32_t map, uint3
     check_bytes(file, indices, count * sizeof *indices, "a list of casters");
 }
 
+// The viewports of a map that wraps around begin at its offset, and one map's size to the left and above.
+static void check_viewports(const ShadowfitUpdate *update, int32_t size) {
+    const int32_t x = (int32_t)update->texel_offset[0], y = (int32_t)update->texel_offset[1];
+    CHECK(update->viewport_count == (x > 0 ? 2u : 1u) * (y > 0 ? 2u : 1u));
+    for (uint32_t i = 0; i < update->viewport_count; i++) {
+        const int32_t *corner = update->viewports[i];
+        CHECK((corner[0] == x || corner[0] == x - size) && (corner[1] == y || corner[1] == y - size));
+        for (uint32_t j = 0; j < i; j++) CHECK(memcmp(corner, update->viewports[j], sizeof update->viewports[j]) != 0);
+    }
+}
+
 static void check_maps(FILE *file, ShadowfitState *state, const ShadowfitMaps *maps, const ShadowfitBoxes *boxes) {
     CHECK(read_int(file) == maps->count);
     for (uint32_t i = 0; i < maps->count; i++) {
@@ -85,6 +96,7 @@ static void check_maps(FILE *file, ShadowfitState *state, const ShadowfitMaps *m
         CHECK_OK(state, shadowfit_update(state, i, NULL, &update));
         CHECK(read_int(file) == update.kind);
         check_bytes(file, update.texel_offset, sizeof update.texel_offset, "the texel offset");
+        check_viewports(&update, (int32_t)map->resolution[0]);
         CHECK(read_int(file) == update.rect_count);
         check_bytes(file, update.rects, update.rect_count * sizeof *update.rects, "the rectangles");
         ShadowfitCasterConstants caster;

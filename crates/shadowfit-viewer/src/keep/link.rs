@@ -242,7 +242,7 @@ impl Reader {
             Err(ParameterError::UnknownId { .. }) => self.unknown.push(key.to_owned()),
             // It may exist with the other settings of the link.
             Ok(()) | Err(ParameterError::Rejected { reason: RejectionReason::NotPresent(_), .. }) => {
-                pairs.push((id.to_owned(), value.to_owned()))
+                pairs.push((id.to_owned(), value.to_owned()));
             }
             Err(error) => return Err(error.into()),
         }
