@@ -23,7 +23,7 @@ const NPM: &str = "crates/shadowfit-wasm/npm/package.json";
 const UNRELEASED: &str = "Unreleased";
 
 /// Checks versions, changelog, tag and packages, and prints the commands of the release. A quick run packs
-/// `bevy-shadowfit` without building it, and leaves out the [`matrix`].
+/// `bevy-shadowfit` without building it, and leaves out the [`matrix()`].
 ///
 /// # Errors
 /// If versions differ, the changelog lacks the version, or a package is too large or does not build.
