@@ -110,7 +110,7 @@ pub unsafe extern "C" fn shadowfit_set_preset(state: *mut ShadowfitState, name: 
 }
 
 /// Changes the parameters of the technique that a TOML text names: a file of the viewer, or a few lines such as
-/// "[map]\nresolution = 1024\nfilter = \"pcf_3x3\"". An error changes nothing.
+/// `"[map]\nresolution = 1024\nfilter = \"pcf_3x3\""`. An error changes nothing.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn shadowfit_set_technique(
     state: *mut ShadowfitState,

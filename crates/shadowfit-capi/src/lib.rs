@@ -1,10 +1,10 @@
 //! The C interface of shadowfit. `include/shadowfit.h` is generated from this crate and documents it.
 //!
-//! The caller owns all memory. A state is one buffer, made of a [`state::State`] and the working memory of fits
+//! The caller owns all memory. A state is one buffer, made of a `state::State` and the working memory of fits
 //! behind it. No function allocates: the library is built with an allocator that always fails.
 //!
-//! All pointers of callers are read and written in [`pointer`], and all functions that C calls are in
-//! [`exports`]. The modules between them are safe Rust.
+//! All pointers of callers are read and written in `pointer`, and all functions that C calls are in
+//! `exports`. The modules between them are safe Rust.
 #![cfg_attr(not(test), no_std)]
 #![allow(unsafe_code, reason = "C passes pointers")]
 #![allow(
