@@ -1,4 +1,5 @@
-//! An OpenGL context without a window, made with EGL on Mesa's surfaceless platform.
+//! An OpenGL context without a window, made with EGL: on Mesa's surfaceless platform, or on the default display of
+//! other drivers.
 
 use std::ffi::c_void;
 
@@ -39,10 +40,15 @@ impl Headless {
     pub(crate) fn new(api: Api) -> Result<Self> {
         // SAFETY: The library is the system's EGL.
         let egl = unsafe { egl::DynamicInstance::<egl::EGL1_5>::load_required() }.context("no libEGL.so.1")?;
-        // SAFETY: The platform has a single display.
-        let display = unsafe { egl.get_platform_display(SURFACELESS, egl::DEFAULT_DISPLAY, &[egl::ATTRIB_NONE]) };
-        let display = display.context("no surfaceless platform; Mesa has one")?;
-        egl.initialize(display)?;
+        // SAFETY: Both platforms have a default display.
+        let displays = unsafe {
+            [
+                egl.get_platform_display(SURFACELESS, egl::DEFAULT_DISPLAY, &[egl::ATTRIB_NONE]).ok(),
+                egl.get_display(egl::DEFAULT_DISPLAY),
+            ]
+        };
+        let mut displays = displays.into_iter().flatten();
+        let display = displays.find(|display| egl.initialize(*display).is_ok()).context("no display for EGL")?;
         let (library, kind, [major, minor]) = match api {
             Api::Core => (egl::OPENGL_API, egl::OPENGL_BIT, [4, 5]),
             Api::Es => (egl::OPENGL_ES_API, egl::OPENGL_ES3_BIT, [3, 0]),
