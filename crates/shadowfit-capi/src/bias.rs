@@ -24,6 +24,12 @@ pub(crate) fn of_filter(
     up: shadowfit::glam::Vec3,
 ) -> Result<Bias, Failure> {
     let ShadowfitFilter { bias, format, taps, disc, .. } = *filter;
+    if !(taps.is_finite() && disc.is_finite()) {
+        return Err(Failure::new(
+            Code::ShadowfitBadInput,
+            format_args!("the filter's radii are {taps} and {disc}; give finite numbers"),
+        ));
+    }
     let radius = FilterRadius { taps, disc: Vec2::splat(disc) };
     let storage = match format {
         SHADOWFIT_FORMAT_FLOAT32 => DepthStorage::Float32,

@@ -23,18 +23,18 @@ pub(crate) fn update(state: &mut State, map: u32, changed: Option<BoxList>) -> R
     let kept = &mut state.kept[map as usize];
     if now.projection.is_empty {
         // No point in view reads the map, and the next one is drawn as a whole.
-        *kept = Kept { map: None, is_current: true };
+        *kept = Kept { map: None, is_current: true, is_lost: false };
         return Ok(NOTHING);
     }
     // A second call in a frame only adds changes.
-    let before = kept.map;
+    let before = kept.map.filter(|_| !kept.is_lost);
     let size = now.projection.resolution;
     let scroll = before.as_ref().map(|before| Scroll::between(before, &now));
     let scroll = scroll.filter(|scroll| !scroll.is_redraw());
     let offset = scroll.map_or(UVec2::ZERO, |scroll| {
         scroll.texel_offset(before.map_or(UVec2::ZERO, |before| before.texel_offset), size)
     });
-    *kept = Kept { map: Some(FittedMap { texel_offset: offset, ..now }), is_current: true };
+    *kept = Kept { map: Some(FittedMap { texel_offset: offset, ..now }), is_current: true, is_lost: false };
     let mut update = ShadowfitUpdate { texel_offset: offset.to_array(), ..NOTHING };
     // One viewport for each piece of the whole map.
     for (piece, viewport) in TexelRect::all(size).stored(offset, size).zip(&mut update.viewports) {

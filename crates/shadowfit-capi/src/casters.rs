@@ -56,6 +56,7 @@ fn visible(state: &mut State) -> Result<&[CasterVolume], Failure> {
 /// Returns the texels of the map that a rectangle of its texture belongs to.
 fn window(rect: &ShadowfitRect) -> Result<TexelRect, Failure> {
     let first = |stored: u32, viewport: i32| u32::try_from(i64::from(stored) - i64::from(viewport)).ok();
+    let first = |stored, viewport| first(stored, viewport).map(|texel| texel.min(MOST));
     let corner = first(rect.x, rect.viewport_x).zip(first(rect.y, rect.viewport_y));
     let (x, y) = corner.ok_or_else(|| {
         Failure::new(Code::ShadowfitBadInput, "a rectangle lies outside its viewport; pass one of shadowfit_update")

@@ -1,12 +1,12 @@
 //! Visible demand: the surfaces in a depth buffer of an earlier frame, counted here or by the demand shader.
 
 use shadowfit::ViewFrustum;
-use shadowfit::demand::{Counts, DepthPicture, VisibleDemandSpace};
+use shadowfit::demand::{DepthPicture, VisibleDemandSpace};
 use shadowfit::glam::{Mat4, Vec3, Vec4};
 use shadowfit::uniform::DemandUniform;
 
 use crate::error::Failure;
-use crate::pointer::DepthRead;
+use crate::pointer::{DepthRead, GivenCounts};
 use crate::state::{Memory, State};
 use crate::types::{ShadowfitDepths, ShadowfitView};
 use crate::view;
@@ -65,11 +65,11 @@ impl DepthBuffer {
     }
 
     /// Sets the counts of the demand shader.
-    pub(crate) fn set_counts(&self, memory: Memory<'_>, given: &Counts) -> Result<(), Failure> {
+    pub(crate) fn set_counts(&self, memory: Memory<'_>, given: &GivenCounts) -> Result<(), Failure> {
         let Memory { state, counts, .. } = memory;
         state.seen = None;
         let space = self.space(state)?;
-        counts.copy_from_slice(given);
+        given.copy(counts);
         state.seen = Some(space);
         Ok(())
     }

@@ -91,7 +91,10 @@ impl Write for Text {
     fn write_str(&mut self, text: &str) -> fmt::Result {
         let free = Self::CAPACITY - 1 - self.length;
         let end = text.floor_char_boundary(free);
-        self.bytes[self.length..self.length + end].copy_from_slice(&text.as_bytes()[..end]);
+        let copy = &mut self.bytes[self.length..self.length + end];
+        copy.copy_from_slice(&text.as_bytes()[..end]);
+        // A zero byte would end the text.
+        copy.iter_mut().filter(|byte| **byte == 0).for_each(|byte| *byte = b'?');
         self.length += end;
         if end == text.len() { Ok(()) } else { Err(fmt::Error) }
     }
@@ -109,6 +112,13 @@ impl Failure {
         let mut failure = Self { code, text: Text::EMPTY };
         failure.text.set(text);
         failure
+    }
+}
+
+impl Failure {
+    /// Returns this failure with another code, unless a pointer is null.
+    pub(crate) fn with_code_unless_null(self, code: Code) -> Self {
+        if self.code == Code::ShadowfitNullPointer { self } else { Self { code, ..self } }
     }
 }
 

@@ -9,7 +9,7 @@ use crate::constants::{ShadowfitCasterConstants, ShadowfitDemandConstants, Shado
 use crate::demand::DepthBuffer;
 use crate::error::{Failure, ShadowfitResult};
 use crate::fit::Frame;
-use crate::pointer::{self, BoxList, DepthRead, Indices, Output};
+use crate::pointer::{self, BoxList, DepthRead, GivenCounts, Indices, Output};
 use crate::state::{Memory, ShadowfitState};
 use crate::types::{
     SHADOWFIT_MAX_VIEWS, SHADOWFIT_VERSION, ShadowfitBias, ShadowfitBoxes, ShadowfitCamera, ShadowfitDepths,
@@ -102,7 +102,8 @@ pub unsafe extern "C" fn shadowfit_set_preset(state: *mut ShadowfitState, name: 
     // SAFETY: as for the caller.
     unsafe {
         call(state, |memory| {
-            let name = pointer::text(name, pointer::length(name))?;
+            let name = pointer::text(name, pointer::length(name))
+                .map_err(|failure| failure.with_code_unless_null(ShadowfitResult::ShadowfitUnknownPreset))?;
             memory.state.set_technique(&technique::preset(name)?);
             Ok(())
         })
@@ -230,8 +231,8 @@ pub unsafe extern "C" fn shadowfit_set_visible_counts(
     unsafe {
         call(state, |memory| {
             let depths = pointer::read(depths)?;
-            let counts = pointer::counts(counts)?;
-            DepthBuffer::new(&depths, &pointer::read(depths.view)?)?.set_counts(memory, counts)
+            let counts = GivenCounts::new(counts)?;
+            DepthBuffer::new(&depths, &pointer::read(depths.view)?)?.set_counts(memory, &counts)
         })
     }
 }
@@ -246,7 +247,7 @@ pub unsafe extern "C" fn shadowfit_fit(
     // SAFETY: as for the caller.
     unsafe {
         call(state, |Memory { state, scratch, counts, boxes }| {
-            state.forget_fit();
+            state.begin_fit();
             let (output, frame) = (Output::new(maps)?, read_frame(frame)?);
             fit::fit(Memory { state: &mut *state, scratch, counts, boxes }, &frame)?;
             output.write(fit::written(&state.fitted, frame.origin));

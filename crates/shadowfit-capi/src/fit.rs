@@ -56,8 +56,6 @@ impl Frame {
 /// Fits the maps of a frame.
 pub(crate) fn fit(memory: Memory<'_>, frame: &Frame) -> Result<(), Failure> {
     let Memory { state, scratch, counts, boxes } = memory;
-    state.frame = None;
-    state.kept.iter_mut().for_each(|kept| kept.is_current = false);
     let Gathered { input, mut scratch } = frame.gather(scratch, boxes)?;
     let grid = state.seen.map(|seen| seen.grid(counts));
     let histogram = state.seen.map(|seen| seen.histogram(counts));

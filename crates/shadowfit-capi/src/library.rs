@@ -29,6 +29,18 @@ fn panic(_: &core::panic::PanicInfo) -> ! {
     unsafe { abort() }
 }
 
-/// Symbol that Rust's own precompiled functions refer to. It is never called, because nothing unwinds.
+// Symbol that Rust's own precompiled functions refer to. It is never called, because nothing unwinds. It is weak, so
+// that a program may also link a library with Rust's standard library, which defines it.
+#[cfg(all(unix, not(target_vendor = "apple")))]
+core::arch::global_asm!(
+    ".pushsection .rodata",
+    ".weak rust_eh_personality",
+    ".hidden rust_eh_personality",
+    "rust_eh_personality:",
+    ".byte 0",
+    ".popsection"
+);
+
+#[cfg(not(all(unix, not(target_vendor = "apple"))))]
 #[unsafe(no_mangle)]
 extern "C" fn rust_eh_personality() {}

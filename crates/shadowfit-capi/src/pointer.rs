@@ -94,34 +94,43 @@ pub(crate) unsafe fn numbers<const COUNT: usize>(pointer: *const f64) -> Result<
     Ok(unsafe { pointer.cast::<[f64; COUNT]>().read_unaligned() })
 }
 
-/// Returns the caller's counts of visible surfaces.
-pub(crate) unsafe fn counts<'a>(pointer: *const u32) -> Result<&'a Counts, Code> {
-    if pointer.is_null() {
-        return Err(Code::ShadowfitNullPointer);
+/// The caller's counts of visible surfaces.
+pub(crate) struct GivenCounts(*const Counts);
+
+impl GivenCounts {
+    pub(crate) unsafe fn new(pointer: *const u32) -> Result<Self, Code> {
+        if pointer.is_null() { Err(Code::ShadowfitNullPointer) } else { Ok(Self(pointer.cast())) }
     }
-    if !pointer.is_aligned() {
-        return Err(Code::ShadowfitMisaligned);
+
+    pub(crate) fn copy(&self, into: &mut Counts) {
+        // SAFETY: the caller's array has this many numbers, in memory of its own.
+        unsafe { core::ptr::copy_nonoverlapping(self.0.cast::<u8>(), into.as_mut_ptr().cast(), size_of::<Counts>()) }
     }
-    // SAFETY: the caller's array has this many numbers.
-    Ok(unsafe { &*pointer.cast::<Counts>() })
 }
 
-/// Returns a position, or an error unless it is finite.
+/// Greatest coordinate of an origin, in metres, as for eyes.
+const MAX_ORIGIN: f64 = 1e18;
+
+/// Returns the position of an origin, or an error for coordinates that are not finite or too large.
 pub(crate) fn position(position: [f64; 3]) -> Result<DVec3, Failure> {
     let position = DVec3::from_array(position);
-    if position.is_finite() {
+    if position.is_finite() && position.abs().max_element() <= MAX_ORIGIN {
         return Ok(position);
     }
-    Err(Failure::new(Code::ShadowfitBadInput, format_args!("an origin is {position}; give finite numbers")))
+    Err(Failure::new(
+        Code::ShadowfitBadInput,
+        format_args!("an origin is {position}; give numbers from -{MAX_ORIGIN:e} to {MAX_ORIGIN:e}"),
+    ))
 }
 
-/// Reads a list of boxes.
+/// Reads a list of finite boxes.
 pub(crate) unsafe fn boxes(pointer: *const ShadowfitBoxes) -> Result<Option<BoxList>, Failure> {
     if pointer.is_null() {
         return Err(Code::ShadowfitNullPointer.into());
     }
     // SAFETY: as for the caller.
-    unsafe { BoxList::new(&pointer.read_unaligned()) }
+    let list = unsafe { BoxList::new(&pointer.read_unaligned()) }?;
+    list.map(BoxList::check).transpose()
 }
 
 /// Writes a value without a size.
@@ -139,14 +148,14 @@ pub(crate) unsafe fn create(pointer: *mut ShadowfitState, given: *mut usize, max
     if pointer.is_null() || given.is_null() {
         return Err(Code::ShadowfitNullPointer);
     }
-    let needed = size(max_boxes).unwrap_or(usize::MAX);
     // SAFETY: `given` points to a `size_t`.
     let available = unsafe { given.read_unaligned() };
-    if available < needed {
+    let needed = size(max_boxes);
+    let Some(needed) = needed.filter(|needed| *needed <= available) else {
         // SAFETY: as above.
-        unsafe { given.write_unaligned(needed) };
+        unsafe { given.write_unaligned(needed.unwrap_or(usize::MAX)) };
         return Err(Code::ShadowfitTooSmall);
-    }
+    };
     let state = pointer.cast::<State>();
     if !state.is_aligned() {
         return Err(Code::ShadowfitMisaligned);
@@ -242,6 +251,15 @@ impl BoxList {
 
     pub(crate) const fn count(&self) -> usize {
         self.count
+    }
+
+    /// Returns an error for a box whose numbers are not finite.
+    pub(crate) fn check(self) -> Result<Self, Failure> {
+        let is_bad = |aabb: &Aabb| !(aabb.min.is_finite() && aabb.max.is_finite());
+        let Some((index, Aabb { min, max })) = self.iter().enumerate().find(|(_, aabb)| is_bad(aabb)) else {
+            return Ok(self);
+        };
+        Err(Failure::new(Code::ShadowfitBadInput, format_args!("box {index} is {min} to {max}; give finite numbers")))
     }
 
     /// Returns the boxes one by one.

@@ -96,6 +96,8 @@ pub(crate) struct Kept {
     pub(crate) map: Option<FittedMap>,
     /// Whether it is the map of the last fit.
     pub(crate) is_current: bool,
+    /// Whether the texels were lost since they were drawn.
+    pub(crate) is_lost: bool,
 }
 
 impl State {
@@ -118,19 +120,34 @@ impl State {
         self.history.reset();
         self.seen = None;
         self.forget_fit();
-        self.invalidate();
+        self.forget_kept();
     }
 
     /// Sets another technique. The next fit keeps no map of the old one.
     pub(crate) fn set_technique(&mut self, technique: &Technique) {
         self.technique = *technique;
         self.forget_fit();
-        self.invalidate();
+        self.forget_kept();
     }
 
     /// Makes the next updates draw whole maps.
     pub(crate) fn invalidate(&mut self) {
+        self.kept.iter_mut().for_each(|kept| kept.is_lost = true);
+    }
+
+    /// Forgets all kept maps. Maps need no updates until the next one.
+    fn forget_kept(&mut self) {
         self.kept = [Kept::default(); MAX_MAPS];
+        self.keeps = false;
+    }
+
+    /// Begins a fit. Maps without an update since the last fit may have missed changes, so they are lost.
+    pub(crate) fn begin_fit(&mut self) {
+        self.forget_fit();
+        for kept in &mut self.kept {
+            kept.is_lost |= !kept.is_current;
+            kept.is_current = false;
+        }
     }
 
     /// Removes the maps of the last fit.

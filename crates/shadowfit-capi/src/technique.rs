@@ -13,7 +13,7 @@ use shadowfit::settings::{CasterPolicy, MapSelection};
 use shadowfit::{PRESETS, Technique};
 use shadowfit_params::tool::Settings;
 use shadowfit_params::{Group, Kind, PARAMETERS, Value, parameter, set_value};
-use toml_parser::decoder::{Encoding, StringBuilder};
+use toml_parser::decoder::{Encoding, IntegerRadix, ScalarKind, StringBuilder};
 use toml_parser::lexer::Token;
 use toml_parser::parser::{EventReceiver, parse_document};
 use toml_parser::{ErrorSink, ParseError, Source, Span};
@@ -62,7 +62,8 @@ struct Entry {
     line: usize,
 }
 
-/// A key or a value, without quotes. No key and no option is longer.
+/// A key or a value, without quotes. Every key and option is shorter. Longer words are cut off and end with an ellipsis,
+/// which no valid word has.
 #[derive(Clone, Copy)]
 struct Word {
     bytes: [u8; Self::CAPACITY],
@@ -77,11 +78,16 @@ impl Word {
         core::str::from_utf8(&self.bytes[..self.length]).unwrap_or_default()
     }
 
-    fn push(&mut self, text: &str) -> bool {
-        let Some(free) = self.bytes.get_mut(self.length..self.length + text.len()) else { return false };
-        free.copy_from_slice(text.as_bytes());
-        self.length += text.len();
-        true
+    fn push(&mut self, text: &str) {
+        const ELLIPSIS: &str = "…";
+        let most = Self::CAPACITY - ELLIPSIS.len();
+        let end = text.floor_char_boundary(most.saturating_sub(self.length));
+        for part in [&text[..end], if end < text.len() { ELLIPSIS } else { "" }] {
+            if let Some(free) = self.bytes.get_mut(self.length..self.length + part.len()) {
+                free.copy_from_slice(part.as_bytes());
+                self.length += part.len();
+            }
+        }
     }
 }
 
@@ -91,11 +97,13 @@ impl StringBuilder<'_> for Word {
     }
 
     fn push_str(&mut self, text: &str) -> bool {
-        self.push(text)
+        self.push(text);
+        true
     }
 
     fn push_char(&mut self, letter: char) -> bool {
-        self.push(letter.encode_utf8(&mut [0; 4]))
+        self.push(letter.encode_utf8(&mut [0; 4]));
+        true
     }
 }
 
@@ -147,17 +155,15 @@ impl File {
 
     /// Begins a table.
     fn open(&mut self, number: usize, line: &Line) -> Result<(), Failure> {
+        if line.depth != 1 {
+            return Err(failure(number, "a header has one word, such as [map]"));
+        }
         let name = line.path[0].as_str();
-        let group = Group::ALL.into_iter().find(|group| is_of_file(*group) && group.id() == name && line.depth == 1);
-        self.group = Some(group.ok_or_else(|| {
-            failure(
-                number,
-                format_args!(
-                    "there is no group {name:?}; there are {}",
-                    Names(|index: usize| Group::ALL.get(index).map(|group| group.id()))
-                ),
-            )
-        })?);
+        let group = groups().find(|group| group.id() == name);
+        let names = |index: usize| groups().nth(index).map(Group::id);
+        let group = group
+            .ok_or_else(|| failure(number, format_args!("there is no group {name:?}; there are {}", Names(names))))?;
+        self.group = Some(group);
         Ok(())
     }
 
@@ -169,11 +175,13 @@ impl File {
             (None, 1) if matches!(first, "name" | "summary") => return Ok(()),
             (Some(group), 1) => [group.id(), first],
             (None, 2) => [first, second],
-            _ => ["", first],
+            (None, 1) => ["", first],
+            _ => return Err(failure(number, format_args!("the key {first}.{second} has too many words"))),
         };
         let found = PARAMETERS.iter().position(|parameter| parameter.id.split_once('.') == Some((group, key)));
-        let index =
-            found.filter(|index| is_of_file(PARAMETERS[*index].group)).ok_or_else(|| unknown(number, group, key))?;
+        let index = found
+            .filter(|index| groups().any(|group| group == PARAMETERS[*index].group))
+            .ok_or_else(|| unknown(number, group, key))?;
         let parameter = &PARAMETERS[index];
         let entry = &mut self.entries[index.min(MAX_ENTRIES - 1)];
         if let Some(earlier) = entry {
@@ -187,9 +195,9 @@ impl File {
     }
 }
 
-/// Returns whether technique files contain a group.
-fn is_of_file(group: Group) -> bool {
-    group.is_technique() || group == Group::Input
+/// Returns the groups of technique files.
+fn groups() -> impl Iterator<Item = Group> {
+    Group::ALL.into_iter().filter(|group| group.is_technique() || *group == Group::Input)
 }
 
 fn failure(line: usize, text: impl core::fmt::Display) -> Failure {
@@ -198,7 +206,6 @@ fn failure(line: usize, text: impl core::fmt::Display) -> Failure {
 
 /// Returns the error for a key that no group has.
 fn unknown(line: usize, group: &str, key: &str) -> Failure {
-    let groups = || Group::ALL.into_iter().filter(|group| is_of_file(*group));
     let Some(known) = groups().find(|known| known.id() == group) else {
         return failure(line, format_args!("{key:?} is in no group; write it under a header such as [map]"));
     };
@@ -272,10 +279,10 @@ impl EventReceiver for Line<'_> {
         let Some(raw) = self.source.get(span) else { return };
         let mut value = Word::EMPTY;
         let raw = toml_parser::Raw::new_unchecked(raw.as_str(), encoding, span);
-        // Long texts are names for people, which this library ignores.
-        let mut ignored: Option<ParseError> = None;
-        let errors: &mut dyn ErrorSink = if encoding.is_some() { &mut ignored } else { error };
-        let _kind = raw.decode_scalar(&mut value, errors);
+        let kind = raw.decode_scalar(&mut value, error);
+        if matches!(kind, ScalarKind::Integer(radix) if radix != IntegerRadix::Dec) {
+            error.report_error(ParseError::new("write numbers in decimal").with_unexpected(span));
+        }
         self.value = Some(value);
     }
 }
@@ -388,7 +395,19 @@ mod tests {
             ("[map", &["line 1"]),
             ("[map]\nfade =", &["line 2"]),
             ("[map]\nfade", &["line 2"]),
-            ("[map.fade]\nx = 1", &["line 1", "map"]),
+            ("[map.fade]\nx = 1", &["line 1", "one word"]),
+            ("map.fade.x = 1", &["line 1", "map.fade", "too many"]),
+            ("[map]\nsplits.count = 3", &["line 2", "splits.count", "too many"]),
+            ("[map]\nfilter = \"pcf_3x3", &["line 2"]),
+            ("[map]\nfilter = 'pcf_3x3", &["line 2"]),
+            ("[map]\nresolution = 0x400", &["line 2", "decimal"]),
+            ("[map]\nresolution = 0o2000", &["line 2", "decimal"]),
+            (
+                "[map]\nthe_key_of_a_person_who_likes_to_write_very_long_names = 1",
+                &["line 2", "map.the_key_of", "filter"],
+            ),
+            ("[map]\nfade = 0.1000000000000000000000000000000000000000000000000001", &["line 2", "map.fade"]),
+            ("[map]\n\"res\\u0000olution\" = 1", &["line 2", "map.res?olution", "filter"]),
         ] {
             let error = refused(text);
             assert!(words.iter().all(|word| error.contains(word)), "{text}: {error}");

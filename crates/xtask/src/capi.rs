@@ -294,6 +294,7 @@ pub(crate) fn test() -> Result<()> {
     run(&compile("cc", TESTS, &SANITIZERS, fixed, &folder.join("sanitized"))?)?;
     run(&compile("cc", TESTS, &[], libraries.shared.as_os_str(), &folder.join("shared"))?)?;
     process::run(&mut Command::new(compile("cc", EXAMPLE, &SANITIZERS, fixed, &folder.join("example"))?))?;
+    test_beside_rust(fixed, &folder)?;
     if process::succeeds(Command::new("c++").arg("--version")) {
         let header = process::root().join(HEADER);
         process::run(
@@ -311,6 +312,20 @@ fn compile(compiler: &str, source: &str, flags: &[&str], library: &OsStr, progra
     command.arg("-I").arg(root.join(CRATE).join("include")).arg(root.join(source)).arg(library);
     process::run(command.args(["-lm", "-pthread", "-o"]).arg(program))?;
     Ok(program.to_owned())
+}
+
+/// Links the example with a second static library in Rust, which has Rust's standard library.
+fn test_beside_rust(library: &OsStr, folder: &Path) -> Result<()> {
+    let (source, other) = (folder.join("other.rs"), folder.join("libother.a"));
+    fs::write(&source, "#[unsafe(no_mangle)]\npub extern \"C\" fn other() -> usize { std::env::args().count() }\n")?;
+    let mut rustc = Command::new("rustc");
+    rustc.args(["--edition", "2024", "--crate-type", "staticlib", "-o"]).arg(&other).arg(&source);
+    process::run(&mut rustc)?;
+    let root = process::root();
+    let mut command = Command::new("cc");
+    command.args(FLAGS).arg("-Wl,--undefined=other").arg("-I").arg(root.join(CRATE).join("include"));
+    command.arg(root.join(EXAMPLE)).arg(library).arg(&other);
+    process::run(command.args(["-lm", "-pthread", "-ldl", "-o"]).arg(folder.join("beside")))
 }
 
 /// Checks that the shared library needs no function that could allocate, print or read files.

@@ -273,6 +273,8 @@ static void states_are_checked(void) {
     size = SIZE_MAX - 8;
     CHECK(shadowfit_state_size(SIZE_MAX / 2) == SIZE_MAX);
     CHECK(shadowfit_init(state, &size, SIZE_MAX / 2, SHADOWFIT_VERSION) == SHADOWFIT_TOO_SMALL);
+    size = SIZE_MAX;
+    CHECK(shadowfit_init(state, &size, SIZE_MAX, SHADOWFIT_VERSION) == SHADOWFIT_TOO_SMALL);
     for (uint32_t result = 0; result < 12; result++) CHECK(strlen(shadowfit_result_text(result)) > 5);
     free(memory);
 }
@@ -320,10 +322,48 @@ static void calls_out_of_order_name_the_missing_call(void) {
     CHECK_OK(state, shadowfit_invalidate(state));
     CHECK_OK(state, shadowfit_update(state, 0, NULL, &update));
     CHECK(update.kind == SHADOWFIT_UPDATE_WHOLE);
+    // Texels that are lost in a frame are still read with their offset.
+    CHECK_OK(state, shadowfit_invalidate(state));
+    for (uint32_t i = 1; i < maps.count; i++) CHECK_OK(state, shadowfit_update(state, i, NULL, &update));
+    CHECK_OK(state, shadowfit_receiver_constants(state, &receiver));
+    // Changed boxes must be finite. Otherwise their old shadows would stay.
+    float endless[6] = {-1, 0, -1, 1, INFINITY, 1};
+    ShadowfitBoxes changed = {.min_max = endless, .count = 1};
+    CHECK_RESULT(state, shadowfit_update(state, 0, &changed, &update), SHADOWFIT_BAD_INPUT);
+    CHECK_RESULT(state, shadowfit_casters(state, 0, NULL, 0, &changed, &index, 1, &count), SHADOWFIT_BAD_INPUT);
+    changed = boxes;
+    changed.origin[0] = 1e300;
+    CHECK_RESULT(state, shadowfit_update(state, 0, &changed, &update), SHADOWFIT_BAD_INPUT);
     // A failed fit leaves no maps.
     frame.light_direction[1] = NAN;
     CHECK_RESULT(state, shadowfit_fit(state, &frame, &maps), SHADOWFIT_BAD_INPUT);
     CHECK_RESULT(state, shadowfit_caster_constants(state, 0, &caster), SHADOWFIT_CALL_FIT_FIRST);
+    // Changes of casters may have been missed in that frame, so maps are drawn whole.
+    frame.light_direction[1] = -0.8f;
+    CHECK_OK(state, shadowfit_fit(state, &frame, &maps));
+    CHECK_OK(state, shadowfit_update(state, 0, NULL, &update));
+    CHECK(update.kind == SHADOWFIT_UPDATE_WHOLE);
+    // Likewise after a frame without maps, whose view begins beyond the shadow distance.
+    const char *distance = "[fit]\nmax_distance = 50\n";
+    CHECK_OK(state, shadowfit_set_technique(state, distance, strlen(distance)));
+    CHECK_OK(state, shadowfit_fit(state, &frame, &maps));
+    CHECK_OK(state, shadowfit_receiver_constants(state, &receiver));
+    for (uint32_t i = 0; i < maps.count; i++) CHECK_OK(state, shadowfit_update(state, i, NULL, &update));
+    ShadowfitCamera beyond = {.size = sizeof beyond, .eye = {0, 1.7, 20}, .forward = {0, 0, -1}, .up = {0, 1, 0},
+                              .fov_y = 0.8f, .aspect = 1.6f, .near_plane = 100, .far_plane = 200};
+    ShadowfitView far_view = {.size = sizeof far_view};
+    CHECK_OK(state, shadowfit_view_from_camera(state, &beyond, &far_view));
+    frame.views = &far_view;
+    CHECK_OK(state, shadowfit_fit(state, &frame, &maps));
+    CHECK(maps.count == 0);
+    frame.views = &view;
+    CHECK_OK(state, shadowfit_fit(state, &frame, &maps));
+    CHECK_OK(state, shadowfit_update(state, 0, NULL, &update));
+    CHECK(update.kind == SHADOWFIT_UPDATE_WHOLE);
+    // A reset also ends the keeping of maps.
+    CHECK_OK(state, shadowfit_reset(state));
+    CHECK_OK(state, shadowfit_fit(state, &frame, &maps));
+    CHECK_OK(state, shadowfit_receiver_constants(state, &receiver));
     free(state);
 }
 
@@ -396,7 +436,7 @@ static void bad_input_returns_codes_and_sentences(void) {
             frame.light_direction[axis] = bad[i];
             CHECK_RESULT(state, shadowfit_fit(state, &frame, &maps), SHADOWFIT_BAD_INPUT);
             frame = good;
-            frame.origin[axis] = bad[i];
+            frame.origin[axis] = i == 0 ? 1e60 : (double)bad[i];
             CHECK_RESULT(state, shadowfit_fit(state, &frame, &maps), SHADOWFIT_BAD_INPUT);
             frame = good;
             frame.casters.origin[axis] = bad[i];
@@ -430,6 +470,7 @@ static void cameras_techniques_and_depths_are_checked(void) {
     CHECK_RESULT(state, shadowfit_view_from_camera(state, NULL, &view), SHADOWFIT_NULL_POINTER);
     CHECK_RESULT(state, shadowfit_set_preset(state, "none"), SHADOWFIT_UNKNOWN_PRESET);
     CHECK_RESULT(state, shadowfit_set_preset(state, NULL), SHADOWFIT_NULL_POINTER);
+    CHECK_RESULT(state, shadowfit_set_preset(state, "\xff"), SHADOWFIT_UNKNOWN_PRESET);
     size_t presets = 0;
     for (; shadowfit_preset(presets) != NULL; presets++)
         CHECK_OK(state, shadowfit_set_preset(state, shadowfit_preset(presets)));
@@ -470,7 +511,7 @@ static void cameras_techniques_and_depths_are_checked(void) {
     CHECK_RESULT(state, shadowfit_set_visible_depths(state, &wrong), SHADOWFIT_BAD_INPUT);
     depths[4] = NAN;
     CHECK_OK(state, shadowfit_set_visible_depths(state, &good));
-    uint32_t *counts = calloc(SHADOWFIT_COUNTS, sizeof *counts);
+    uint32_t *counts = calloc(SHADOWFIT_COUNTS + 1, sizeof *counts);
     ShadowfitDemandConstants block, turned;
     wrong = good;
     wrong.depths = NULL;
@@ -481,6 +522,7 @@ static void cameras_techniques_and_depths_are_checked(void) {
     CHECK_RESULT(state, shadowfit_demand_constants(state, &wrong, NULL), SHADOWFIT_NULL_POINTER);
     CHECK_RESULT(state, shadowfit_demand_constants(state, NULL, &block), SHADOWFIT_NULL_POINTER);
     CHECK_OK(state, shadowfit_set_visible_counts(state, &wrong, counts));
+    CHECK_OK(state, shadowfit_set_visible_counts(state, &wrong, (const void *)((const char *)counts + 1)));
     CHECK_RESULT(state, shadowfit_set_visible_counts(state, &wrong, NULL), SHADOWFIT_NULL_POINTER);
     CHECK_RESULT(state, shadowfit_set_visible_counts(state, NULL, counts), SHADOWFIT_NULL_POINTER);
     free(counts);
@@ -521,7 +563,9 @@ static void lists_of_casters_fit_into_what_is_given(void) {
     CHECK_OK(state, shadowfit_bias(state, last, &filter, &bias));
     CHECK(bias.constant_depth > 0);
     filter.taps = NAN;
-    CHECK_RESULT(state, shadowfit_bias(state, last, &filter, &bias), SHADOWFIT_BAD_INPUT);
+    for (filter.bias = 0; filter.bias < 3; filter.bias++)
+        CHECK_RESULT(state, shadowfit_bias(state, last, &filter, &bias), SHADOWFIT_BAD_INPUT);
+    filter.bias = SHADOWFIT_BIAS_CONSTANT;
     filter.taps = 1;
     filter.format = 8;
     CHECK_RESULT(state, shadowfit_bias(state, last, &filter, &bias), SHADOWFIT_BAD_INPUT);
