@@ -103,7 +103,7 @@ impl GivenCounts {
     }
 
     pub(crate) fn copy(&self, into: &mut Counts) {
-        // SAFETY: the caller's array has this many numbers, in memory of its own.
+        // SAFETY: the caller's array has this many numbers and does not overlap.
         unsafe { core::ptr::copy_nonoverlapping(self.0.cast::<u8>(), into.as_mut_ptr().cast(), size_of::<Counts>()) }
     }
 }
@@ -253,7 +253,7 @@ impl BoxList {
         self.count
     }
 
-    /// Returns an error for a box whose numbers are not finite.
+    /// Refuses boxes with numbers that are not finite.
     pub(crate) fn check(self) -> Result<Self, Failure> {
         let is_bad = |aabb: &Aabb| !(aabb.min.is_finite() && aabb.max.is_finite());
         let Some((index, Aabb { min, max })) = self.iter().enumerate().find(|(_, aabb)| is_bad(aabb)) else {

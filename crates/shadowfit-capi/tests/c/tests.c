@@ -322,7 +322,7 @@ static void calls_out_of_order_name_the_missing_call(void) {
     CHECK_OK(state, shadowfit_invalidate(state));
     CHECK_OK(state, shadowfit_update(state, 0, NULL, &update));
     CHECK(update.kind == SHADOWFIT_UPDATE_WHOLE);
-    // Texels that are lost in a frame are still read with their offset.
+    // Lost texels are still read with their offset.
     CHECK_OK(state, shadowfit_invalidate(state));
     for (uint32_t i = 1; i < maps.count; i++) CHECK_OK(state, shadowfit_update(state, i, NULL, &update));
     CHECK_OK(state, shadowfit_receiver_constants(state, &receiver));
