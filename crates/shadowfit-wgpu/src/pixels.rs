@@ -1,10 +1,8 @@
-//! World positions of a depth buffer's pixels, and the checks of a depth buffer.
+//! The checks of a depth buffer.
 
 use core::fmt;
 
 use shadowfit::DepthConvention;
-#[cfg(feature = "rays")]
-use shadowfit::glam::{DMat4, DVec4, Mat4};
 
 /// The reason why a pass cannot read the depth buffer of a view.
 #[derive(Clone, Debug, PartialEq)]
@@ -94,22 +92,4 @@ pub(crate) fn check_rectangle(rectangle: [u32; 4], texture: [u32; 2]) -> Result<
 fn lies_in([left, top, width, height]: [u32; 4], [columns, rows]: [u32; 2]) -> bool {
     let is_inside = |start: u32, side: u32, whole: u32| side > 0 && start <= whole && side <= whole - start;
     is_inside(left, width, columns) && is_inside(top, height, rows)
-}
-
-/// Returns the matrix that takes a pixel's column and row (at its centre) and its depth minus the far plane's
-/// depth to homogeneous positions in the source space of `clip_from_world`. Returns `None` if the matrix has
-/// no inverse. `size` is the size of the view's rectangle, in pixels. If depth is not reversed, most of the
-/// view lies near depth 1. Differences from 1 are exact in f32, and small enough for an f32 matrix.
-#[cfg(feature = "rays")]
-pub(crate) fn world_from_pixel(clip_from_world: &Mat4, size: [u32; 2], convention: DepthConvention) -> Option<DMat4> {
-    let [width, height] = size.map(f64::from);
-    let clip_from_pixel = DMat4::from_cols(
-        DVec4::X * (2.0 / width),
-        DVec4::Y * (-2.0 / height),
-        DVec4::Z,
-        DVec4::new(1.0 / width - 1.0, 1.0 - 1.0 / height, f64::from(convention.far()), 1.0),
-    );
-    let clip_from_world = clip_from_world.as_dmat4();
-    let world_from_pixel = clip_from_world.inverse() * clip_from_pixel;
-    (clip_from_world.determinant() != 0.0 && world_from_pixel.is_finite()).then_some(world_from_pixel)
 }

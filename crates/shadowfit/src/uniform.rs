@@ -317,8 +317,10 @@ impl DemandUniform {
         // The histogram has no bins for negative or zero depths, which orthographic views may have.
         let octaves = libm::log2(f64::from(far) / f64::from(near));
         let (first, bins_per_octave) = if near > 0.0 { (near, DEPTHS as f64 / octaves) } else { (f32::MAX, 0.0) };
+        let world_from_pixel = world_from_pixel(&clip_from_world, size, depth)
+            .ok_or(FitError::NotFinite { input: "the inverse of a depth buffer's matrix", value: f64::NAN })?;
         Ok(Self {
-            world_from_pixel: world_from_pixel(&clip_from_world, size, depth)?.to_cols_array_2d(),
+            world_from_pixel: world_from_pixel.as_mat4().to_cols_array_2d(),
             view: view_depth(view),
             direction: space.direction.to_array(),
             far_depth: if depth == DepthConvention::Reversed { 0.0 } else { 1.0 },
@@ -339,9 +341,11 @@ impl DemandUniform {
     }
 }
 
-/// Returns the matrix from a pixel's column and row, and its stored depth minus the far plane's, to the homogeneous
-/// position relative to the eye. The difference keeps its digits at far depths.
-fn world_from_pixel(clip_from_world: &Mat4, size: [u32; 2], depth: DepthConvention) -> Result<Mat4, FitError> {
+/// Returns the matrix from a pixel's column and row (at its centre), and its stored depth minus the far plane's, to
+/// homogeneous positions in the source space of `clip_from_world`. Returns `None` if the matrix has no inverse.
+/// `size` is the size of the picture, in pixels. If depth is not reversed, most of the view lies near depth 1.
+/// Differences from 1 are exact in f32, and small enough for an f32 matrix.
+pub fn world_from_pixel(clip_from_world: &Mat4, size: [u32; 2], depth: DepthConvention) -> Option<DMat4> {
     let [width, height] = size.map(f64::from);
     let (scale, far) = match depth {
         DepthConvention::ZeroToOne => (1.0, 1.0),
@@ -355,11 +359,8 @@ fn world_from_pixel(clip_from_world: &Mat4, size: [u32; 2], depth: DepthConventi
         DVec4::new(1.0 / width - 1.0, 1.0 - 1.0 / height, far, 1.0),
     );
     let clip_from_world = clip_from_world.as_dmat4();
-    let matrix = (clip_from_world.inverse() * clip_from_pixel).as_mat4();
-    if clip_from_world.determinant() != 0.0 && matrix.is_finite() {
-        return Ok(matrix);
-    }
-    Err(FitError::NotFinite { input: "the inverse of a depth buffer's matrix", value: f64::NAN })
+    let world_from_pixel = clip_from_world.inverse() * clip_from_pixel;
+    (clip_from_world.determinant() != 0.0 && world_from_pixel.as_mat4().is_finite()).then_some(world_from_pixel)
 }
 
 /// Returns the plane whose distance from a position relative to the eye is its view depth, in metres.

@@ -1,5 +1,5 @@
 //! `cargo xtask release`: prepares a release, so that publishing is one decision by a person. The dry run checks
-//! everything and prints the commands. Nothing here publishes or tags.
+//! everything and prints the commands. It neither publishes nor tags.
 //!
 //! Contradictions are errors. Open decisions, such as a date or an owner, are printed as things to do.
 

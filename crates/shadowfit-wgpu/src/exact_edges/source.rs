@@ -2,12 +2,13 @@
 //! unreliable.
 
 use shadowfit::glam::{DMat4, DVec3, DVec4, Vec3};
+use shadowfit::uniform::world_from_pixel;
 use shadowfit::{Aabb, DepthConvention, FittedMap};
 
 use super::error::EdgeError;
 use super::uniform::{EdgeUniform, MAX_UNKNOWN, UnknownUniform, points};
 use super::view::EdgeView;
-use crate::pixels::{DepthBufferError, world_from_pixel};
+use crate::pixels::DepthBufferError;
 use crate::{MapView, SunShadows};
 
 /// Margin of the boxes of unknown casters in addition to the filter's footprint, in texels. The rasteriser's
@@ -83,7 +84,6 @@ fn checked_matrix(view: &EdgeView<'_>, [_, _, width, height]: [u32; 4]) -> Resul
         return Err(EdgeError::RayOffset(view.ray_offset));
     }
     let to_world = world_from_pixel(&view.clip_from_eye, [width, height], view.convention)
-        .filter(|matrix| matrix.as_mat4().is_finite())
         .ok_or(DepthBufferError::SingularMatrix)?;
     let ray = MiddleRay::new(&to_world, [width, height], view.convention);
     let is_reversed = view.convention == DepthConvention::Reversed;
